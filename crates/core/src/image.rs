@@ -1,0 +1,101 @@
+//! What a cast produces: premultiplied colour and first-hit depth, on the host.
+
+/// One rendered view in host memory, rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Image {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Premultiplied RGBA, display-referred, one per pixel, row by row from the top left.
+    pub color: Vec<[f32; 4]>,
+    /// Depth of the first visible sample along view −Z, metres; infinite where nothing was hit.
+    pub depth_m: Vec<f32>,
+}
+
+impl Image {
+    /// A transparent image with nothing hit.
+    pub fn transparent(width: u32, height: u32) -> Self {
+        let pixels = width as usize * height as usize;
+        Self { width, height, color: vec![[0.0; 4]; pixels], depth_m: vec![f32::INFINITY; pixels] }
+    }
+
+    /// Opaque RGB over a background colour, each channel in [0, 1].
+    pub fn over_background(&self, background: [f32; 3]) -> RgbImage {
+        let rgb = self
+            .color
+            .iter()
+            .map(|&[r, g, b, a]| {
+                let through = 1.0 - a;
+                [r + through * background[0], g + through * background[1], b + through * background[2]]
+                    .map(|channel| channel.clamp(0.0, 1.0))
+            })
+            .collect();
+        RgbImage { width: self.width, height: self.height, rgb }
+    }
+}
+
+/// An opaque picture, display-referred, rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RgbImage {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// RGB in [0, 1], one per pixel, row by row from the top left.
+    pub rgb: Vec<[f32; 3]>,
+}
+
+impl RgbImage {
+    /// Two pictures of equal height side by side, the first on the left.
+    ///
+    /// # Panics
+    /// If the heights differ.
+    pub fn beside(&self, right: &Self) -> Self {
+        assert_eq!(self.height, right.height, "pictures side by side need one height");
+        let rows = self.rgb.chunks(self.width as usize).zip(right.rgb.chunks(right.width as usize));
+        let rgb = rows.flat_map(|(l, r)| l.iter().chain(r).copied()).collect();
+        Self { width: self.width + right.width, height: self.height, rgb }
+    }
+
+    /// Two pictures of equal width one above the other, the first on top.
+    ///
+    /// # Panics
+    /// If the widths differ.
+    pub fn above(&self, below: &Self) -> Self {
+        assert_eq!(self.width, below.width, "pictures above each other need one width");
+        let rgb = self.rgb.iter().chain(&below.rgb).copied().collect();
+        Self { width: self.width, height: self.height + below.height, rgb }
+    }
+
+    /// Red–cyan anaglyph by Dubois' least-squares matrices for the left eye's red and the right eye's cyan
+    /// filter (Dubois, "A projection method to generate anaglyph stereo images", ICASSP 2001).
+    ///
+    /// # Panics
+    /// If the sizes differ.
+    pub fn anaglyph(&self, right: &Self) -> Self {
+        assert_eq!((self.width, self.height), (right.width, right.height), "both eyes need one size");
+        const LEFT: [[f32; 3]; 3] =
+            [[0.456, 0.500, 0.176], [-0.040, -0.038, -0.016], [-0.015, -0.021, -0.005]];
+        const RIGHT: [[f32; 3]; 3] =
+            [[-0.043, -0.088, -0.002], [0.378, 0.734, -0.018], [-0.072, -0.113, 1.226]];
+        let dot = |row: [f32; 3], c: [f32; 3]| row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
+        let rgb = self
+            .rgb
+            .iter()
+            .zip(&right.rgb)
+            .map(|(&l, &r)| [0, 1, 2].map(|i| (dot(LEFT[i], l) + dot(RIGHT[i], r)).clamp(0.0, 1.0)))
+            .collect();
+        Self { width: self.width, height: self.height, rgb }
+    }
+
+    /// Channels as 8-bit, rounded.
+    pub fn to_rgb8(&self) -> Vec<u8> {
+        self.rgb.iter().flatten().map(|c| (c * 255.0 + 0.5) as u8).collect()
+    }
+
+    /// Channels as 16-bit, rounded.
+    pub fn to_rgb16(&self) -> Vec<u16> {
+        self.rgb.iter().flatten().map(|c| (c * 65535.0 + 0.5) as u16).collect()
+    }
+}

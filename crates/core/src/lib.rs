@@ -1,0 +1,14 @@
+//! The vocabulary of Wheatstone and its reference renderer: volumes and their geometry, transfer functions,
+//! views, rigs, phantoms, image metrics, and the CPU ray caster that the GPU is tested against.
+//!
+//! No GPU, no files. Spaces and units are named in every identifier; `ARCHITECTURE.md` lists them.
+#![forbid(unsafe_code)]
+
+pub mod image;
+pub mod metrics;
+pub mod phantom;
+pub mod reference;
+pub mod scene;
+pub mod transfer;
+pub mod view;
+pub mod volume;

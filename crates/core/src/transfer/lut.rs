@@ -1,0 +1,174 @@
+//! The baked transfer function that both casters look up.
+
+use super::TransferFunction;
+
+/// Colour and the base-2 logarithm of the transmittance of one voxel length: `[r, g, b, log2(1 − α)]`.
+///
+/// The logarithm makes the opacity of a step of Δ voxel lengths `1 − exp2(Δ · log2(1 − α))`: one `exp2`.
+pub type LutEntry = [f32; 4];
+
+/// The logarithm that stands for α = 1.
+pub const OPAQUE_LOG2: f32 = -1000.0;
+
+const VALUES_1D: usize = 4096;
+const VALUES_2D: usize = 1024;
+const GRADIENTS_2D: usize = 256;
+const SEGMENT_ENDS: usize = 512;
+
+/// A table over normalised value (fast axis) and a second coordinate, looked up at the nearest entry.
+///
+/// The second coordinate is nothing for 1D transfer functions (height 1), the gradient magnitude in [0, 1] for
+/// 2D ones, and the value at the segment's far end for pre-integrated ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lut {
+    width: usize,
+    height: usize,
+    entries: Vec<LutEntry>,
+    visible: (f32, f32),
+}
+
+impl Lut {
+    /// Bakes a 1D or 2D transfer function.
+    pub fn bake(transfer: &TransferFunction) -> Self {
+        let (width, height) =
+            if transfer.is_2d() { (VALUES_2D, GRADIENTS_2D) } else { (VALUES_1D, 1) };
+        let gradient_alpha: Vec<f32> =
+            (0..height).map(|row| transfer.gradient_opacity_at(coordinate(row, height))).collect();
+        let columns: Vec<([f32; 3], f32)> = (0..width)
+            .map(|column| coordinate(column, width))
+            .map(|value| (transfer.color_at(value), transfer.opacity_at(value)))
+            .collect();
+        let entries = gradient_alpha
+            .iter()
+            .flat_map(|&factor| columns.iter().map(move |&([r, g, b], alpha)| [r, g, b, log2_transmittance(alpha * factor)]))
+            .collect();
+        Self::from_entries(width, height, entries)
+    }
+
+    /// Bakes the pre-integrated form of a 1D transfer function (Engel, Kraus, Ertl 2001): entry (front, back)
+    /// is the mean colour and transmittance of a voxel length along which the value goes linearly from front to
+    /// back. A gradient opacity is left out.
+    pub fn bake_preintegrated(transfer: &TransferFunction) -> Self {
+        let fine = Self::bake(&TransferFunction { gradient_opacity: Vec::new(), ..transfer.clone() });
+        // Running integrals over value of extinction and of extinction-weighted colour.
+        let mut integral = vec![[0.0_f64; 4]; fine.width + 1];
+        for (i, &[r, g, b, log2]) in fine.entries.iter().enumerate() {
+            let extinction = f64::from(-log2);
+            let weighted = [f64::from(r), f64::from(g), f64::from(b), 1.0].map(|c| c * extinction);
+            integral[i + 1] = [0, 1, 2, 3].map(|c| integral[i][c] + weighted[c]);
+        }
+        let fine_index = |end: usize| (coordinate(end, SEGMENT_ENDS) * (fine.width - 1) as f32 + 0.5) as usize;
+        let entries = (0..SEGMENT_ENDS * SEGMENT_ENDS)
+            .map(|i| {
+                let (front, back) = (fine_index(i % SEGMENT_ENDS), fine_index(i / SEGMENT_ENDS));
+                let (lo, hi) = (front.min(back), front.max(back) + 1);
+                let sum = [0, 1, 2, 3].map(|c| integral[hi][c] - integral[lo][c]);
+                let mean_extinction = sum[3] / (hi - lo) as f64;
+                if mean_extinction <= 0.0 {
+                    let [r, g, b, _] = fine.entries[front];
+                    return [r, g, b, 0.0];
+                }
+                let rgb = [0, 1, 2].map(|c| (sum[c] / sum[3]) as f32);
+                [rgb[0], rgb[1], rgb[2], (-mean_extinction as f32).max(OPAQUE_LOG2)]
+            })
+            .collect();
+        Self::from_entries(SEGMENT_ENDS, SEGMENT_ENDS, entries)
+    }
+
+    fn from_entries(width: usize, height: usize, entries: Vec<LutEntry>) -> Self {
+        let opaque_columns =
+            || (0..width).filter(|&column| (0..height).any(|row| entries[row * width + column][3] < 0.0));
+        let half_entry = 0.51 / (width - 1) as f32;
+        let visible = match (opaque_columns().next(), opaque_columns().next_back()) {
+            (Some(first), Some(last)) => {
+                (coordinate(first, width) - half_entry, coordinate(last, width) + half_entry)
+            }
+            _ => (2.0, -1.0),
+        };
+        Self { width, height, entries, visible }
+    }
+
+    /// Entries along the value axis.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Entries along the second axis.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Entries, the value axis fastest.
+    pub fn entries(&self) -> &[LutEntry] {
+        &self.entries
+    }
+
+    /// Every value outside this closed interval is fully transparent. Empty (first above second) if nothing is
+    /// visible.
+    pub fn visible(&self) -> (f32, f32) {
+        self.visible
+    }
+
+    /// The entry nearest to a normalised value, for 1D tables.
+    pub fn at(&self, value: f32) -> LutEntry {
+        self.entries[index(value, self.width)]
+    }
+
+    /// The entry nearest to a normalised value and a second coordinate in [0, 1].
+    pub fn at_2d(&self, value: f32, second: f32) -> LutEntry {
+        self.entries[index(second, self.height) * self.width + index(value, self.width)]
+    }
+}
+
+fn index(coordinate: f32, count: usize) -> usize {
+    ((coordinate * (count - 1) as f32 + 0.5) as usize).min(count - 1)
+}
+
+fn coordinate(index: usize, count: usize) -> f32 {
+    if count == 1 { 0.0 } else { index as f32 / (count - 1) as f32 }
+}
+
+fn log2_transmittance(alpha: f32) -> f32 {
+    (1.0 - alpha.clamp(0.0, 1.0)).log2().max(OPAQUE_LOG2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ramp_bakes_to_its_opacity() {
+        let lut = Lut::bake(&TransferFunction::ramp(0.25, 0.75).unwrap());
+        assert_eq!(lut.at(0.2)[3], 0.0);
+        assert!((1.0 - lut.at(0.5)[3].exp2() - 0.5).abs() < 1e-3);
+        assert_eq!(lut.at(1.0), [1.0, 1.0, 1.0, OPAQUE_LOG2]);
+        assert!((0.249..0.2505).contains(&lut.visible().0));
+        assert!(lut.visible().1 >= 1.0);
+    }
+
+    #[test]
+    fn two_dimensional_ramp_needs_value_and_gradient() {
+        let lut = Lut::bake(&TransferFunction::ramp_2d(0.0, 1.0, 0.1, 0.3).unwrap());
+        assert_eq!(lut.at_2d(0.9, 0.05)[3], 0.0);
+        assert!((1.0 - lut.at_2d(0.5, 0.2)[3].exp2() - 0.25).abs() < 0.01);
+    }
+
+    #[test]
+    fn preintegrated_diagonal_is_the_function_itself() {
+        let transfer = TransferFunction::ramp(0.2, 0.9).unwrap();
+        let (lut, pre) = (Lut::bake(&transfer), Lut::bake_preintegrated(&transfer));
+        for value in [0.1, 0.3, 0.5, 0.8] {
+            assert!((pre.at_2d(value, value)[3] - lut.at(value)[3]).abs() < 0.02, "{value}");
+        }
+        let spike = pre.at_2d(0.0, 1.0);
+        assert!(spike[3] < 0.0, "a segment that crosses visible values is visible");
+        assert_eq!(pre.at_2d(0.0, 1.0), pre.at_2d(1.0, 0.0));
+    }
+
+    #[test]
+    fn nothing_visible_gives_an_empty_interval() {
+        let clear = TransferFunction::ramp(2.0, 3.0).unwrap();
+        let (lo, hi) = Lut::bake(&clear).visible();
+        assert!(lo > hi);
+    }
+}

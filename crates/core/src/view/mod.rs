@@ -1,0 +1,26 @@
+//! Views: where the eye is, what it looks through, and the rays of its pixels.
+
+mod frustum;
+mod orbit;
+mod placement;
+mod ray_field;
+mod rig;
+
+pub use frustum::{Frustum, FrustumError, OrthographicBox, Projection};
+pub use orbit::Orbit;
+pub use placement::{AnatomicalDirection, world_from_patient};
+pub use ray_field::RayField;
+pub use rig::Rig;
+
+use glam::DAffine3;
+
+/// One picture to make: pose, projection and size in pixels. Off-axis is the normal case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// World (right-handed, +Y up, metres) to view space (eye at the origin, looking along −Z, metres).
+    pub view_from_world: DAffine3,
+    /// What lies within the picture.
+    pub projection: Projection,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+}

@@ -1,0 +1,176 @@
+//! Typed voxel arrays.
+
+use rayon::prelude::*;
+use std::fmt;
+
+/// A scalar type that voxels can have.
+pub trait Voxel: Copy + Send + Sync + bytemuck::Pod {
+    /// The value as f64, exact for every supported type.
+    fn to_f64(self) -> f64;
+}
+
+macro_rules! voxel_types {
+    ($($variant:ident, $type:ty, $name:literal;)*) => {
+        $(impl Voxel for $type {
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+        })*
+
+        /// Voxels in the type that the file gave them.
+        #[derive(Debug, Clone, PartialEq)]
+        #[allow(missing_docs, reason = "each variant is the array of the scalar type that it names")]
+        pub enum Voxels {
+            $($variant(Vec<$type>),)*
+        }
+
+        /// The scalar type of a voxel.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[allow(missing_docs, reason = "each variant is the scalar type that it names")]
+        pub enum VoxelType {
+            $($variant,)*
+        }
+
+        impl VoxelType {
+            /// Every type, smallest first.
+            pub const ALL: &[Self] = &[$(Self::$variant,)*];
+
+            /// Name as used in file names and listings: `uint8`, `float32`, ….
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                }
+            }
+
+            /// Bytes per voxel.
+            pub fn byte_size(self) -> usize {
+                match self {
+                    $(Self::$variant => size_of::<$type>(),)*
+                }
+            }
+        }
+
+        impl Voxels {
+            /// The scalar type.
+            pub fn voxel_type(&self) -> VoxelType {
+                match self {
+                    $(Self::$variant(_) => VoxelType::$variant,)*
+                }
+            }
+
+            /// Number of voxels.
+            pub fn len(&self) -> usize {
+                match self {
+                    $(Self::$variant(v) => v.len(),)*
+                }
+            }
+
+            /// The voxel at a linear index, as f64.
+            pub fn value(&self, index: usize) -> f64 {
+                match self {
+                    $(Self::$variant(v) => v[index].to_f64(),)*
+                }
+            }
+
+            /// Decodes little-endian bytes. Trailing bytes that do not fill a voxel are left out.
+            pub fn from_le_bytes(voxel_type: VoxelType, bytes: &[u8]) -> Self {
+                match voxel_type {
+                    $(VoxelType::$variant => Self::$variant(
+                        bytes.as_chunks().0.iter().map(|&b| <$type>::from_le_bytes(b)).collect(),
+                    ),)*
+                }
+            }
+
+            /// Decodes big-endian bytes. Trailing bytes that do not fill a voxel are left out.
+            pub fn from_be_bytes(voxel_type: VoxelType, bytes: &[u8]) -> Self {
+                match voxel_type {
+                    $(VoxelType::$variant => Self::$variant(
+                        bytes.as_chunks().0.iter().map(|&b| <$type>::from_be_bytes(b)).collect(),
+                    ),)*
+                }
+            }
+
+            /// The voxels as bytes in the machine's own byte order.
+            pub fn as_bytes(&self) -> &[u8] {
+                match self {
+                    $(Self::$variant(v) => bytemuck::cast_slice(v),)*
+                }
+            }
+
+            /// Maps every voxel through `f` (given and taken as f64), in parallel.
+            pub fn map_to_vec<T: Send>(&self, f: impl Fn(f64) -> T + Sync + Send) -> Vec<T> {
+                match self {
+                    $(Self::$variant(v) => v.par_iter().map(|x| f(x.to_f64())).collect(),)*
+                }
+            }
+
+            /// Smallest and largest finite value; `None` if no value is finite. Beyond ±1e300 counts as infinite.
+            pub fn finite_range(&self) -> Option<(f64, f64)> {
+                match self {
+                    $(Self::$variant(v) => finite_range(v),)*
+                }
+            }
+        }
+    };
+}
+
+voxel_types! {
+    U8, u8, "uint8";
+    I8, i8, "int8";
+    U16, u16, "uint16";
+    I16, i16, "int16";
+    U32, u32, "uint32";
+    I32, i32, "int32";
+    F32, f32, "float32";
+    F64, f64, "float64";
+}
+
+impl Voxels {
+    /// Whether there are no voxels.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Replaces NaN and infinite voxels by `value` and counts them.
+    pub(super) fn replace_non_finite(&mut self, value: f64) -> usize {
+        fn replace<T: Send>(
+            voxels: &mut [T],
+            value: T,
+            keep: impl Fn(&T) -> bool + Sync + Send,
+        ) -> usize
+        where
+            T: Copy + Sync,
+        {
+            voxels.par_iter_mut().filter_map(|x| (!keep(x)).then(|| *x = value)).count()
+        }
+        match self {
+            Self::F32(v) => replace(v, value as f32, |&x| is_usable(f64::from(x))),
+            Self::F64(v) => replace(v, value, |&x| is_usable(x)),
+            _ => 0,
+        }
+    }
+}
+
+/// Whether a value can be windowed: finite, and small enough that a difference of two is finite too.
+fn is_usable(value: f64) -> bool {
+    value.abs() <= 1e300
+}
+
+fn finite_range<T: Voxel>(voxels: &[T]) -> Option<(f64, f64)> {
+    const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (lo, hi) = voxels
+        .par_chunks(1 << 16)
+        .map(|chunk| {
+            chunk.iter().map(|x| x.to_f64()).filter(|&x| is_usable(x)).fold(NOTHING, |(lo, hi), x| {
+                (if x < lo { x } else { lo }, if x > hi { x } else { hi })
+            })
+        })
+        .reduce(|| NOTHING, |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    (lo <= hi).then_some((lo, hi))
+}
+
+impl fmt::Display for VoxelType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
