@@ -3,8 +3,11 @@
 //! Opacity is per unit length: α is the opacity of one voxel length, and a step of Δ voxel lengths
 //! contributes `1 − (1 − α)^Δ`. Colours are display-referred (as VTK and ParaView composite them).
 
+pub mod color_space;
+mod colormap;
 mod lut;
 
+pub use colormap::{Colormap, UnknownColormap};
 pub use lut::{Lut, LutEntry, OPAQUE_LOG2};
 
 use thiserror::Error;
