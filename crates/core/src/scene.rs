@@ -121,6 +121,8 @@ pub struct Settings {
     pub preintegrated: bool,
     /// How visible samples are lit.
     pub shading: Shading,
+    /// Display-referred colour of an isosurface; `None` is a light grey.
+    pub surface_rgb: Option<[f32; 3]>,
     /// How gradients are estimated.
     pub gradient: GradientMethod,
     /// Samples per voxel length (f of DM Eq. 2).
@@ -145,6 +147,7 @@ impl Settings {
             transfer,
             preintegrated: false,
             shading: Shading::None,
+            surface_rgb: None,
             gradient: GradientMethod::default(),
             sampling_factor: 1.0,
             early_termination: Some(EARLY_TERMINATION),

@@ -1,0 +1,140 @@
+//! The numbers of a cast: settings and placement turned into what a kernel reads, once, for both casters.
+
+use crate::scene::{Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading};
+use crate::transfer::Lut;
+use glam::{DVec3, Mat3, Vec3, Vec4};
+
+/// Ambient, diffuse and specular weights and the specular exponent of Phong shading.
+pub const PHONG: [f32; 4] = [0.2, 0.7, 0.2, 20.0];
+
+/// Samples that a shadow ray takes.
+pub const SHADOW_SAMPLES: u32 = 24;
+
+/// Distance of neighbouring samples of shadow and directional rays, voxel lengths.
+pub const SHADING_STEP: f32 = 2.0;
+
+/// Steps per direction of directional shading.
+pub const DIRECTIONAL_STEPS: u32 = 4;
+
+/// Radius of the sphere that ambient occlusion samples, voxel lengths.
+pub const AMBIENT_RADIUS: f32 = 4.0;
+
+/// Accumulated opacity at which a composited ray has hit something: the first that an 8-bit picture shows.
+pub const FIRST_HIT_ALPHA: f32 = 1.0 / 255.0;
+
+/// Colour of an isosurface whose transfer function gives it none.
+pub const SURFACE_RGB: [f32; 3] = [0.8; 3];
+
+/// Which table a cast looks colours up in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Classifier {
+    /// By value.
+    Value,
+    /// By value and gradient magnitude.
+    ValueGradient,
+    /// By the values at both ends of a step.
+    PreIntegrated,
+    /// Opaque from a value upwards.
+    Isovalue,
+}
+
+/// What a kernel needs to know of the settings, besides the volume and the view.
+#[derive(Debug, Clone)]
+pub struct CastParameters {
+    /// Which table is looked up.
+    pub classifier: Classifier,
+    /// The baked transfer function.
+    pub lut: Lut,
+    /// Samples per voxel length.
+    pub sampling_factor: f32,
+    /// Accumulated opacity at which a ray ends; above 1 if it never does.
+    pub termination_alpha: f32,
+    /// Normalised value of the isosurface.
+    pub isovalue: f32,
+    /// Colour of the isosurface.
+    pub surface_rgb: Vec3,
+    /// Low corner of the visible box, texture space.
+    pub box_lo: Vec3,
+    /// High corner of the visible box, texture space.
+    pub box_hi: Vec3,
+    /// Visible half-space in texture space: `xyz · p + w ≥ 0`.
+    pub plane: Vec4,
+    /// Vectors in texture space to metric space (world axes, voxel lengths).
+    pub metric_from_texture: Mat3,
+    /// The inverse.
+    pub texture_from_metric: Mat3,
+    /// Unit vector towards the light of Phong shading, metric space; zero for a headlight.
+    pub to_light: Vec3,
+    /// Step of a shadow ray, texture space.
+    pub shadow_step: Vec3,
+    /// Value integral to grey level: one over the volume's longest side in voxel lengths.
+    pub xray_scale: f32,
+    /// Unit directions of directional shading, metric space; their absolute components are the light's colour.
+    pub directions: Vec<Vec3>,
+}
+
+impl CastParameters {
+    /// Works the numbers out.
+    pub fn new(settings: &Settings, placement: &Placement) -> Self {
+        let metric_from_texture = placement.metric_from_texture();
+        let texture_from_metric = metric_from_texture.inverse();
+        let classifier = match settings.mode {
+            Mode::Isosurface { .. } => Classifier::Isovalue,
+            Mode::Composite if settings.preintegrated => Classifier::PreIntegrated,
+            _ if settings.transfer.is_2d() => Classifier::ValueGradient,
+            _ => Classifier::Value,
+        };
+        let lut = match classifier {
+            Classifier::PreIntegrated => Lut::bake_preintegrated(&settings.transfer),
+            _ => Lut::bake(&settings.transfer),
+        };
+        let isovalue = if let Mode::Isosurface { isovalue } = settings.mode { isovalue } else { 0.0 };
+        let shadow_direction = settings.light.shadow_direction();
+        let directions = match settings.shading {
+            Shading::Directional { directions } => sphere_directions(directions.min(MAX_DIRECTIONS)),
+            _ => Vec::new(),
+        };
+        let sides = [0, 1, 2].map(|axis| metric_from_texture.col(axis).length());
+        Self {
+            classifier,
+            lut,
+            sampling_factor: settings.sampling_factor,
+            termination_alpha: settings.early_termination.unwrap_or(2.0),
+            isovalue,
+            surface_rgb: settings.surface_rgb.unwrap_or(SURFACE_RGB).into(),
+            box_lo: settings.clip.box_lo.clamp(DVec3::ZERO, DVec3::ONE).as_vec3(),
+            box_hi: settings.clip.box_hi.clamp(DVec3::ZERO, DVec3::ONE).as_vec3(),
+            plane: plane_in_texture(settings, placement),
+            metric_from_texture: metric_from_texture.as_mat3(),
+            texture_from_metric: texture_from_metric.as_mat3(),
+            to_light: match settings.light {
+                Light::Headlight => Vec3::ZERO,
+                Light::Directional(_) => shadow_direction,
+            },
+            shadow_step: texture_from_metric.as_mat3() * (shadow_direction * SHADING_STEP),
+            xray_scale: (1.0 / sides.into_iter().fold(0.0, f64::max)) as f32,
+            directions,
+        }
+    }
+}
+
+fn plane_in_texture(settings: &Settings, placement: &Placement) -> Vec4 {
+    let Some(plane) = settings.clip.plane else { return Vec4::W };
+    let world_from_texture = placement.world_from_texture();
+    let normal = world_from_texture.matrix3.transpose() * plane.normal;
+    let offset = plane.normal.dot(world_from_texture.translation) - plane.offset_m;
+    normal.extend(offset).as_vec4()
+}
+
+/// Directions spread evenly over the sphere (Fibonacci lattice), the same for every sample: no noise, no flicker.
+fn sphere_directions(count: u32) -> Vec<Vec3> {
+    let golden_angle = std::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
+    (0..count)
+        .map(|i| {
+            let y = 1.0 - (2.0 * i as f32 + 1.0) / count as f32;
+            let (sin, cos) = (golden_angle * (i as f32 + 0.5)).sin_cos();
+            let radius = (1.0 - y * y).sqrt();
+            Vec3::new(radius * cos, y, radius * sin)
+        })
+        .collect()
+}

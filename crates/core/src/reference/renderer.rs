@@ -1,0 +1,130 @@
+//! The caster: a volume ready for sampling, and pictures of it.
+
+use super::accumulate::{self, Pixel};
+use super::classify::{Context, PreIntegrated, Value, ValueGradient};
+use super::ray::Ray;
+use super::volume::{PaddedVoxels, Sampler, Stored, scale_and_offset};
+use crate::cast::{CastParameters, Classifier};
+use crate::image::Image;
+use crate::scene::{Mode, Placement, Settings};
+use crate::view::{RayField, View};
+use crate::volume::{StorageKind, StoredVolume, StoredVoxels, Volume};
+use rayon::prelude::*;
+
+/// Side of the square tiles that threads take, pixels: the rays of a tile stay close together in the volume.
+const TILE: u32 = 16;
+
+/// A volume held for casting on the CPU.
+#[derive(Debug)]
+pub struct Caster {
+    stored: StoredVolume,
+    voxels: AnyPadded,
+}
+
+#[derive(Debug)]
+enum AnyPadded {
+    U8(PaddedVoxels<u8>),
+    U16(PaddedVoxels<u16>),
+    F32(PaddedVoxels<f32>),
+}
+
+/// A picture and what it cost.
+#[derive(Debug, Clone)]
+pub struct Cast {
+    /// Colour and depth.
+    pub image: Image,
+    /// Samples along rays, those of shading not counted.
+    pub samples: u64,
+}
+
+impl Caster {
+    /// Holds a volume at the precision that loses nothing.
+    pub fn new(volume: &Volume) -> Self {
+        Self::with_storage(volume, StorageKind::lossless_for(volume))
+    }
+
+    /// Holds a volume at a given precision.
+    pub fn with_storage(volume: &Volume, kind: StorageKind) -> Self {
+        let mut stored = StoredVolume::new(volume, kind);
+        let none = StoredVoxels::U8(Vec::new());
+        let voxels = match std::mem::replace(&mut stored.voxels, none) {
+            StoredVoxels::U8(v) => AnyPadded::U8(PaddedVoxels::new(stored.dims, &v)),
+            StoredVoxels::U16(v) => AnyPadded::U16(PaddedVoxels::new(stored.dims, &v)),
+            StoredVoxels::F32(v) => AnyPadded::F32(PaddedVoxels::new(stored.dims, &v)),
+        };
+        Self { stored, voxels }
+    }
+
+    /// Casts every view on all cores.
+    pub fn cast(&self, settings: &Settings, placement: &Placement, views: &[View]) -> Vec<Cast> {
+        let parameters = CastParameters::new(settings, placement);
+        let window = scale_and_offset(&self.stored, settings.window);
+        let cast = |view: &View| match &self.voxels {
+            AnyPadded::U8(v) => cast_view(Sampler::new(v, window), &parameters, settings, placement, view),
+            AnyPadded::U16(v) => cast_view(Sampler::new(v, window), &parameters, settings, placement, view),
+            AnyPadded::F32(v) => cast_view(Sampler::new(v, window), &parameters, settings, placement, view),
+        };
+        views.iter().map(cast).collect()
+    }
+}
+
+fn cast_view<T: Stored>(
+    sampler: Sampler<'_, T>,
+    parameters: &CastParameters,
+    settings: &Settings,
+    placement: &Placement,
+    view: &View,
+) -> Cast {
+    let context = Context { sampler, parameters, gradient_method: settings.gradient };
+    let rays = RayField::new(view, placement.texture_from_world());
+    let shading = settings.shading;
+    match (settings.mode, parameters.classifier) {
+        (Mode::Composite, Classifier::ValueGradient) => cast_tiles(&rays, parameters, view.size, |ray| {
+            accumulate::composite::<ValueGradient, T>(&context, shading, ray)
+        }),
+        (Mode::Composite, Classifier::PreIntegrated) => cast_tiles(&rays, parameters, view.size, |ray| {
+            accumulate::composite::<PreIntegrated, T>(&context, shading, ray)
+        }),
+        (Mode::Composite, _) => cast_tiles(&rays, parameters, view.size, |ray| {
+            accumulate::composite::<Value, T>(&context, shading, ray)
+        }),
+        (Mode::Mip, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::mip(&context, ray)),
+        (Mode::MinIp, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::minip(&context, ray)),
+        (Mode::Mean, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::mean(&context, ray)),
+        (Mode::XRay, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::xray(&context, ray)),
+        (Mode::Isosurface { .. }, _) => cast_tiles(&rays, parameters, view.size, |ray| {
+            accumulate::first_hit(&context, shading, ray)
+        }),
+    }
+}
+
+fn cast_tiles(
+    rays: &RayField,
+    parameters: &CastParameters,
+    size: [u32; 2],
+    accumulate: impl Fn(&Ray) -> Pixel + Sync,
+) -> Cast {
+    let [width, height] = size;
+    let tiles: Vec<(u32, u32)> = (0..height.div_ceil(TILE))
+        .flat_map(|row| (0..width.div_ceil(TILE)).map(move |column| (column * TILE, row * TILE)))
+        .collect();
+    let cast_tile = |&(left, top): &(u32, u32)| -> Vec<(usize, Pixel)> {
+        let rows = top..(top + TILE).min(height);
+        rows.flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x, y)))
+            .filter_map(|(x, y)| {
+                let ray = Ray::of_pixel(rays, parameters, x, y);
+                (ray.sample_count > 0)
+                    .then(|| (y as usize * width as usize + x as usize, accumulate(&ray)))
+            })
+            .collect()
+    };
+    let finished: Vec<Vec<(usize, Pixel)>> = tiles.par_iter().map(cast_tile).collect();
+    let mut image = Image::transparent(width, height);
+    let mut samples = 0;
+    for (index, pixel) in finished.into_iter().flatten() {
+        image.color[index] = pixel.color;
+        image.depth_m[index] = pixel.depth_m;
+        samples += u64::from(pixel.samples);
+    }
+    Cast { image, samples }
+}
