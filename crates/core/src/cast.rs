@@ -1,8 +1,9 @@
 //! The numbers of a cast: settings and placement turned into what a kernel reads, once, for both casters.
 
-use crate::scene::{Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading};
+use crate::scene::{GradientMethod, Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading};
 use crate::transfer::Lut;
-use glam::{DVec3, Mat3, Vec3, Vec4};
+use crate::volume::Window;
+use glam::{DAffine3, DVec3, Mat3, Vec3, Vec4};
 
 /// Ambient, diffuse and specular weights and the specular exponent of Phong shading.
 pub const PHONG: [f32; 4] = [0.2, 0.7, 0.2, 20.0];
@@ -38,9 +39,19 @@ pub enum Classifier {
     Isovalue,
 }
 
-/// What a kernel needs to know of the settings, besides the volume and the view.
+/// Everything that a kernel reads besides the voxels and the view. Made once per change of the settings.
 #[derive(Debug, Clone)]
 pub struct CastParameters {
+    /// How samples become a pixel.
+    pub mode: Mode,
+    /// How visible samples are lit.
+    pub shading: Shading,
+    /// How gradients are estimated.
+    pub gradient: GradientMethod,
+    /// Values that are normalised to [0, 1].
+    pub window: Window,
+    /// World space to texture space.
+    pub texture_from_world: DAffine3,
     /// Which table is looked up.
     pub classifier: Classifier,
     /// The baked transfer function.
@@ -96,6 +107,11 @@ impl CastParameters {
         };
         let sides = [0, 1, 2].map(|axis| metric_from_texture.col(axis).length());
         Self {
+            mode: settings.mode,
+            shading: settings.shading,
+            gradient: settings.gradient,
+            window: settings.window,
+            texture_from_world: placement.texture_from_world(),
             classifier,
             lut,
             sampling_factor: settings.sampling_factor,
@@ -115,6 +131,13 @@ impl CastParameters {
             xray_scale: (1.0 / sides.into_iter().fold(0.0, f64::max)) as f32,
             directions,
         }
+    }
+
+    /// Most samples that any ray takes: those of the volume's diagonal.
+    pub fn most_samples_per_ray(&self) -> u32 {
+        let corners = [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
+        let diagonal = corners.map(|c| (self.metric_from_texture * c).length()).into_iter().fold(0.0, f32::max);
+        (diagonal * self.sampling_factor).ceil() as u32 + 1
     }
 }
 

@@ -5,7 +5,6 @@ use super::ray::Ray;
 use super::shade::shade;
 use super::volume::Stored;
 use crate::cast::FIRST_HIT_ALPHA;
-use crate::scene::Shading;
 use glam::Vec3;
 
 /// A finished ray.
@@ -28,7 +27,7 @@ impl Pixel {
 }
 
 /// Front-to-back emission and absorption.
-pub(super) fn composite<C: Classify, T: Stored>(context: &Context<'_, T>, shading: Shading, ray: &Ray) -> Pixel {
+pub(super) fn composite<C: Classify, T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
     let mut color = Vec3::ZERO;
     let mut transmittance = 1.0_f32;
     let mut depth_m = f32::INFINITY;
@@ -42,7 +41,7 @@ pub(super) fn composite<C: Classify, T: Stored>(context: &Context<'_, T>, shadin
             let classified = C::classify(context, position, value, previous);
             let step_transmittance = (classified.entry[3] * ray.step_length).exp2();
             if step_transmittance < 1.0 {
-                let rgb = shade::<C, T>(context, shading, ray, position, &classified);
+                let rgb = shade::<C, T>(context, ray, position, &classified);
                 color += rgb * ((1.0 - step_transmittance) * transmittance);
                 transmittance *= step_transmittance;
                 if depth_m == f32::INFINITY && transmittance <= 1.0 - FIRST_HIT_ALPHA {
@@ -111,7 +110,7 @@ fn projected_rgb<T: Stored>(context: &Context<'_, T>, value: f32) -> [f32; 3] {
 const BISECTIONS: u32 = 10;
 
 /// First crossing of the isovalue, in either direction.
-pub(super) fn first_hit<T: Stored>(context: &Context<'_, T>, shading: Shading, ray: &Ray) -> Pixel {
+pub(super) fn first_hit<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
     let isovalue = context.parameters.isovalue;
     let mut previous_is_in = context.sampler.value_at(ray.at(-0.5)) >= isovalue;
     let mut before = -0.5;
@@ -130,7 +129,7 @@ pub(super) fn first_hit<T: Stored>(context: &Context<'_, T>, shading: Shading, r
             let index = 0.5 * (lo + hi);
             let position = ray.at(index);
             let classified: Classified = Isovalue::classify(context, position, isovalue, isovalue);
-            let rgb = shade::<Isovalue, T>(context, shading, ray, position, &classified);
+            let rgb = shade::<Isovalue, T>(context, ray, position, &classified);
             return Pixel::opaque(rgb.to_array(), ray.depth_m(index), i + 1);
         }
         previous_is_in = is_in;

@@ -3,7 +3,6 @@
 use super::gradient::gradient_at;
 use super::volume::{Sampler, Stored};
 use crate::cast::CastParameters;
-use crate::scene::GradientMethod;
 use crate::transfer::{LutEntry, OPAQUE_LOG2};
 use glam::Vec3;
 
@@ -12,13 +11,12 @@ use glam::Vec3;
 pub(super) struct Context<'a, T> {
     pub(super) sampler: Sampler<'a, T>,
     pub(super) parameters: &'a CastParameters,
-    pub(super) gradient_method: GradientMethod,
 }
 
 impl<T: Stored> Context<'_, T> {
     /// Gradient in metric space.
     pub(super) fn gradient_at(&self, position: Vec3) -> Vec3 {
-        gradient_at(&self.sampler, self.gradient_method, &self.parameters.texture_from_metric, position)
+        gradient_at(&self.sampler, self.parameters.gradient, &self.parameters.texture_from_metric, position)
     }
 }
 

@@ -3,12 +3,12 @@
 use super::accumulate::{self, Pixel};
 use super::classify::{Context, PreIntegrated, Value, ValueGradient};
 use super::ray::Ray;
-use super::volume::{PaddedVoxels, Sampler, Stored, scale_and_offset};
+use super::volume::{PaddedVoxels, Sampler, Stored};
 use crate::cast::{CastParameters, Classifier};
 use crate::image::Image;
-use crate::scene::{Mode, Placement, Settings};
+use crate::scene::Mode;
 use crate::view::{RayField, View};
-use crate::volume::{StorageKind, StoredVolume, StoredVoxels, Volume};
+use crate::volume::{Encoding, StorageKind, StoredVoxels, Volume};
 use rayon::prelude::*;
 
 /// Side of the square tiles that threads take, pixels: the rays of a tile stay close together in the volume.
@@ -17,7 +17,7 @@ const TILE: u32 = 16;
 /// A volume held for casting on the CPU.
 #[derive(Debug)]
 pub struct Caster {
-    stored: StoredVolume,
+    encoding: Encoding,
     voxels: AnyPadded,
 }
 
@@ -45,66 +45,57 @@ impl Caster {
 
     /// Holds a volume at a given precision.
     pub fn with_storage(volume: &Volume, kind: StorageKind) -> Self {
-        let mut stored = StoredVolume::new(volume, kind);
-        let none = StoredVoxels::U8(Vec::new());
-        let voxels = match std::mem::replace(&mut stored.voxels, none) {
-            StoredVoxels::U8(v) => AnyPadded::U8(PaddedVoxels::new(stored.dims, &v)),
-            StoredVoxels::U16(v) => AnyPadded::U16(PaddedVoxels::new(stored.dims, &v)),
-            StoredVoxels::F32(v) => AnyPadded::F32(PaddedVoxels::new(stored.dims, &v)),
+        let encoding = Encoding::new(volume, kind);
+        let dims = volume.grid().dims();
+        let voxels = match encoding.encode(volume.voxels(), 0..volume.voxels().len()) {
+            StoredVoxels::U8(v) => AnyPadded::U8(PaddedVoxels::new(dims, &v)),
+            StoredVoxels::U16(v) => AnyPadded::U16(PaddedVoxels::new(dims, &v)),
+            StoredVoxels::F32(v) => AnyPadded::F32(PaddedVoxels::new(dims, &v)),
         };
-        Self { stored, voxels }
+        Self { encoding, voxels }
     }
 
     /// Casts every view on all cores.
-    pub fn cast(&self, settings: &Settings, placement: &Placement, views: &[View]) -> Vec<Cast> {
-        let parameters = CastParameters::new(settings, placement);
-        let window = scale_and_offset(&self.stored, settings.window);
+    pub fn cast(&self, parameters: &CastParameters, views: &[View]) -> Vec<Cast> {
+        let map = self.encoding.normalised_from_stored(parameters.window);
         let cast = |view: &View| match &self.voxels {
-            AnyPadded::U8(v) => cast_view(Sampler::new(v, window), &parameters, settings, placement, view),
-            AnyPadded::U16(v) => cast_view(Sampler::new(v, window), &parameters, settings, placement, view),
-            AnyPadded::F32(v) => cast_view(Sampler::new(v, window), &parameters, settings, placement, view),
+            AnyPadded::U8(v) => cast_view(Sampler::new(v, map), parameters, view),
+            AnyPadded::U16(v) => cast_view(Sampler::new(v, map), parameters, view),
+            AnyPadded::F32(v) => cast_view(Sampler::new(v, map), parameters, view),
         };
         views.iter().map(cast).collect()
     }
 }
 
-fn cast_view<T: Stored>(
-    sampler: Sampler<'_, T>,
-    parameters: &CastParameters,
-    settings: &Settings,
-    placement: &Placement,
-    view: &View,
-) -> Cast {
-    let context = Context { sampler, parameters, gradient_method: settings.gradient };
-    let rays = RayField::new(view, placement.texture_from_world());
-    let shading = settings.shading;
-    match (settings.mode, parameters.classifier) {
-        (Mode::Composite, Classifier::ValueGradient) => cast_tiles(&rays, parameters, view.size, |ray| {
-            accumulate::composite::<ValueGradient, T>(&context, shading, ray)
-        }),
-        (Mode::Composite, Classifier::PreIntegrated) => cast_tiles(&rays, parameters, view.size, |ray| {
-            accumulate::composite::<PreIntegrated, T>(&context, shading, ray)
-        }),
-        (Mode::Composite, _) => cast_tiles(&rays, parameters, view.size, |ray| {
-            accumulate::composite::<Value, T>(&context, shading, ray)
-        }),
-        (Mode::Mip, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::mip(&context, ray)),
-        (Mode::MinIp, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::minip(&context, ray)),
-        (Mode::Mean, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::mean(&context, ray)),
-        (Mode::XRay, _) => cast_tiles(&rays, parameters, view.size, |ray| accumulate::xray(&context, ray)),
-        (Mode::Isosurface { .. }, _) => cast_tiles(&rays, parameters, view.size, |ray| {
-            accumulate::first_hit(&context, shading, ray)
-        }),
+fn cast_view<T: Stored>(sampler: Sampler<'_, T>, parameters: &CastParameters, view: &View) -> Cast {
+    let context = Context { sampler, parameters };
+    match (parameters.mode, parameters.classifier) {
+        (Mode::Composite, Classifier::ValueGradient) => {
+            cast_tiles(parameters, view, |ray| accumulate::composite::<ValueGradient, T>(&context, ray))
+        }
+        (Mode::Composite, Classifier::PreIntegrated) => {
+            cast_tiles(parameters, view, |ray| accumulate::composite::<PreIntegrated, T>(&context, ray))
+        }
+        (Mode::Composite, _) => {
+            cast_tiles(parameters, view, |ray| accumulate::composite::<Value, T>(&context, ray))
+        }
+        (Mode::Mip, _) => cast_tiles(parameters, view, |ray| accumulate::mip(&context, ray)),
+        (Mode::MinIp, _) => cast_tiles(parameters, view, |ray| accumulate::minip(&context, ray)),
+        (Mode::Mean, _) => cast_tiles(parameters, view, |ray| accumulate::mean(&context, ray)),
+        (Mode::XRay, _) => cast_tiles(parameters, view, |ray| accumulate::xray(&context, ray)),
+        (Mode::Isosurface { .. }, _) => {
+            cast_tiles(parameters, view, |ray| accumulate::first_hit(&context, ray))
+        }
     }
 }
 
 fn cast_tiles(
-    rays: &RayField,
     parameters: &CastParameters,
-    size: [u32; 2],
+    view: &View,
     accumulate: impl Fn(&Ray) -> Pixel + Sync,
 ) -> Cast {
-    let [width, height] = size;
+    let rays = RayField::new(view, parameters.texture_from_world);
+    let [width, height] = view.size;
     let tiles: Vec<(u32, u32)> = (0..height.div_ceil(TILE))
         .flat_map(|row| (0..width.div_ceil(TILE)).map(move |column| (column * TILE, row * TILE)))
         .collect();
@@ -112,7 +103,7 @@ fn cast_tiles(
         let rows = top..(top + TILE).min(height);
         rows.flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x, y)))
             .filter_map(|(x, y)| {
-                let ray = Ray::of_pixel(rays, parameters, x, y);
+                let ray = Ray::of_pixel(&rays, parameters, x, y);
                 (ray.sample_count > 0)
                     .then(|| (y as usize * width as usize + x as usize, accumulate(&ray)))
             })

@@ -13,14 +13,13 @@ const FLAT_SQUARED: f32 = 1e-10;
 /// The display-referred colour of a lit sample.
 pub(super) fn shade<C: Classify, T: Stored>(
     context: &Context<'_, T>,
-    shading: Shading,
     ray: &Ray,
     position: Vec3,
     classified: &Classified,
 ) -> Vec3 {
     let [r, g, b, _] = classified.entry;
     let rgb = Vec3::new(r, g, b);
-    match shading {
+    match context.parameters.shading {
         Shading::None => rgb,
         Shading::Phong => phong(context, ray, position, rgb, classified.gradient),
         Shading::Shadow => rgb * shadow::<C, T>(context, position),

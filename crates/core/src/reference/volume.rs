@@ -1,6 +1,5 @@
 //! Trilinear sampling of the stored voxels.
 
-use crate::volume::{StoredVolume, Window};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -96,9 +95,4 @@ impl<'a, T: Stored> Sampler<'a, T> {
     pub(super) fn value_at(&self, position: Vec3) -> f32 {
         (self.voxels.sample(position) * self.scale + self.offset).clamp(0.0, 1.0)
     }
-}
-
-/// Scale and offset that a [`Sampler`] needs for a stored volume and a window.
-pub(super) fn scale_and_offset(stored: &StoredVolume, window: Window) -> (f64, f64) {
-    stored.normalised_from_stored(window)
 }

@@ -8,7 +8,7 @@ mod window;
 
 pub use grid::{Grid, GridError};
 pub use statistics::{Histogram, Statistics};
-pub use storage::{StorageKind, StoredVoxels, StoredVolume};
+pub use storage::{Encoding, StorageKind, StoredVoxels};
 pub use voxels::{Voxel, VoxelType, Voxels};
 pub use window::{Window, WindowError};
 

@@ -1,6 +1,8 @@
 //! How voxels are held for sampling: 8-bit, 16-bit or f32, with the map back to values.
 //!
-//! Both casters sample a [`StoredVolume`], so they interpolate the same numbers.
+//! Both casters sample the stored numbers, so they interpolate the same.
+
+use std::ops::Range;
 
 use super::{Volume, VoxelType, Voxels, Window};
 
@@ -47,50 +49,107 @@ pub enum StoredVoxels {
     F32(Vec<f32>),
 }
 
-/// A volume ready for sampling: `value = stored · value_per_stored + value_at_zero`.
-#[derive(Debug, Clone)]
-pub struct StoredVolume {
-    /// Voxels along each axis.
-    pub dims: [usize; 3],
-    /// First axis fastest.
-    pub voxels: StoredVoxels,
-    /// Value of one stored unit.
-    pub value_per_stored: f64,
-    /// Value of a stored zero.
-    pub value_at_zero: f64,
+/// How a volume's values become stored numbers: `value = stored · value_per_stored + value_at_zero`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Encoding {
+    kind: StorageKind,
+    value_per_stored: f64,
+    value_at_zero: f64,
 }
 
-impl StoredVolume {
-    /// Stores a volume at the given precision. Integers that fit keep their steps; the rest is scaled from the
+impl Encoding {
+    /// The encoding of a volume at a precision. Integers that fit keep their steps; the rest is scaled from the
     /// volume's range to the whole range of the kind ([0, 1] for f32).
     pub fn new(volume: &Volume, kind: StorageKind) -> Self {
         let (lo, hi) = volume.range();
-        let exact = StorageKind::lossless_for(volume) <= kind && kind != StorageKind::F32;
-        let full_scale = match kind {
-            StorageKind::U8 => 255.0,
-            StorageKind::U16 => 65535.0,
-            StorageKind::F32 => 1.0,
+        let fits = kind != StorageKind::F32 && StorageKind::lossless_for(volume) <= kind;
+        let is_native = matches!(
+            (kind, volume.voxels().voxel_type()),
+            (StorageKind::U8, VoxelType::U8) | (StorageKind::U16, VoxelType::U16)
+        );
+        let value_per_stored = if fits || hi <= lo {
+            1.0
+        } else {
+            (hi - lo)
+                / match kind {
+                    StorageKind::U8 => 255.0,
+                    StorageKind::U16 => 65535.0,
+                    StorageKind::F32 => 1.0,
+                }
         };
-        let value_per_stored = if exact || hi <= lo { 1.0 } else { hi / full_scale - lo / full_scale };
-        let dims = volume.grid().dims();
-        let to_stored = |x: f64| (x - lo) / value_per_stored;
-        let voxels = match (kind, volume.voxels()) {
-            (StorageKind::U8, Voxels::U8(v)) => {
-                return Self { dims, voxels: StoredVoxels::U8(v.clone()), value_per_stored: 1.0, value_at_zero: 0.0 };
+        Self { kind, value_per_stored, value_at_zero: if is_native { 0.0 } else { lo } }
+    }
+
+    /// Stored numbers of a range of voxels.
+    ///
+    /// # Panics
+    /// If the range is not within the voxels.
+    pub fn encode(&self, voxels: &Voxels, range: Range<usize>) -> StoredVoxels {
+        let to_stored = |x: f64| (x - self.value_at_zero) / self.value_per_stored;
+        match (self.kind, voxels) {
+            (StorageKind::U8, Voxels::U8(v)) if self.value_at_zero == 0.0 => StoredVoxels::U8(v[range].to_vec()),
+            (StorageKind::U16, Voxels::U16(v)) if self.value_at_zero == 0.0 => {
+                StoredVoxels::U16(v[range].to_vec())
             }
-            (StorageKind::U16, Voxels::U16(v)) => {
-                return Self { dims, voxels: StoredVoxels::U16(v.clone()), value_per_stored: 1.0, value_at_zero: 0.0 };
-            }
-            (StorageKind::U8, v) => StoredVoxels::U8(v.map_to_vec(|x| to_stored(x).round() as u8)),
-            (StorageKind::U16, v) => StoredVoxels::U16(v.map_to_vec(|x| to_stored(x).round() as u16)),
-            (StorageKind::F32, v) => StoredVoxels::F32(v.map_to_vec(|x| to_stored(x) as f32)),
-        };
-        Self { dims, voxels, value_per_stored, value_at_zero: lo }
+            (StorageKind::U8, v) => StoredVoxels::U8(v.map_to_vec(range, |x| to_stored(x).round() as u8)),
+            (StorageKind::U16, v) => StoredVoxels::U16(v.map_to_vec(range, |x| to_stored(x).round() as u16)),
+            (StorageKind::F32, v) => StoredVoxels::F32(v.map_to_vec(range, |x| to_stored(x) as f32)),
+        }
     }
 
     /// Scale and offset from a stored number to the normalised value: `v = clamp(stored · scale + offset, 0, 1)`.
     pub fn normalised_from_stored(&self, window: Window) -> (f64, f64) {
         let width = window.hi() - window.lo();
         (self.value_per_stored / width, (self.value_at_zero - window.lo()) / width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::Grid;
+
+    fn decoded(encoding: Encoding, stored: StoredVoxels) -> Vec<f64> {
+        let numbers: Vec<f64> = match stored {
+            StoredVoxels::U8(v) => v.into_iter().map(f64::from).collect(),
+            StoredVoxels::U16(v) => v.into_iter().map(f64::from).collect(),
+            StoredVoxels::F32(v) => v.into_iter().map(f64::from).collect(),
+        };
+        numbers.iter().map(|s| s * encoding.value_per_stored + encoding.value_at_zero).collect()
+    }
+
+    #[test]
+    fn every_type_survives_its_lossless_kind() {
+        let cases = [
+            (Voxels::U8(vec![0, 7, 255]), StorageKind::U8),
+            (Voxels::I8(vec![-128, 7, 127]), StorageKind::U8),
+            (Voxels::U16(vec![3, 700, 65535]), StorageKind::U16),
+            (Voxels::I16(vec![-1024, 0, 3071]), StorageKind::U16),
+            (Voxels::I16(vec![-100, 0, 100]), StorageKind::U8),
+            (Voxels::I32(vec![100_000, 100_001, 100_255]), StorageKind::U8),
+            (Voxels::U32(vec![0, 1 << 20, 1 << 24]), StorageKind::F32),
+            (Voxels::F64(vec![-1.5, 0.0, 2.25]), StorageKind::F32),
+        ];
+        for (voxels, expected_kind) in cases {
+            let values: Vec<f64> = (0..3).map(|i| voxels.value(i)).collect();
+            let volume = Volume::new(Grid::centred([3, 1, 1], [1.0; 3]).unwrap(), voxels).unwrap();
+            let kind = StorageKind::lossless_for(&volume);
+            assert_eq!(kind, expected_kind, "{:?}", volume.voxels());
+            let encoding = Encoding::new(&volume, kind);
+            let back = decoded(encoding, encoding.encode(volume.voxels(), 0..3));
+            let tolerance = if kind == StorageKind::F32 { (volume.range().1 - volume.range().0) * 1e-7 } else { 0.0 };
+            for (value, back) in values.iter().zip(&back) {
+                assert!((value - back).abs() <= tolerance, "{value} {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn native_integers_narrowed_keep_their_range() {
+        let voxels = Voxels::U16(vec![1000, 2000, 60_000]);
+        let volume = Volume::new(Grid::centred([3, 1, 1], [1.0; 3]).unwrap(), voxels).unwrap();
+        let encoding = Encoding::new(&volume, StorageKind::U8);
+        let back = decoded(encoding, encoding.encode(volume.voxels(), 0..3));
+        assert!((back[0] - 1000.0).abs() < 1e-9 && (back[2] - 60_000.0).abs() < 1e-9, "{back:?}");
     }
 }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 use std::fmt;
+use std::ops::Range;
 
 /// A scalar type that voxels can have.
 pub trait Voxel: Copy + Send + Sync + bytemuck::Pod {
@@ -97,10 +98,17 @@ macro_rules! voxel_types {
                 }
             }
 
-            /// Maps every voxel through `f` (given and taken as f64), in parallel.
-            pub fn map_to_vec<T: Send>(&self, f: impl Fn(f64) -> T + Sync + Send) -> Vec<T> {
+            /// Maps a range of voxels, as f64, in parallel.
+            ///
+            /// # Panics
+            /// If the range is not within the voxels.
+            pub fn map_to_vec<T: Send>(
+                &self,
+                range: Range<usize>,
+                f: impl Fn(f64) -> T + Sync + Send,
+            ) -> Vec<T> {
                 match self {
-                    $(Self::$variant(v) => v.par_iter().map(|x| f(x.to_f64())).collect(),)*
+                    $(Self::$variant(v) => v[range].par_iter().map(|x| f(x.to_f64())).collect(),)*
                 }
             }
 

@@ -1,0 +1,44 @@
+// Mirror of `shared::CastUniform`.
+
+struct CastParameters {
+    // Voxels along each axis.
+    dims: vec3f,
+    // Samples per voxel length.
+    sampling_factor: f32,
+    // Low corner of the visible box, texture space.
+    box_lo: vec3f,
+    // Normalised value of a stored one.
+    value_scale: f32,
+    // High corner of the visible box, texture space.
+    box_hi: vec3f,
+    // Normalised value of a stored zero.
+    value_offset: f32,
+    // Visible half-space in texture space: xyz . p + w >= 0.
+    plane: vec4f,
+    // Vectors in texture space to metric space (world axes, voxel lengths).
+    metric_from_texture: mat3x3f,
+    // The inverse.
+    texture_from_metric: mat3x3f,
+    // Unit vector towards the light of Phong shading, metric space; zero for a headlight.
+    to_light: vec3f,
+    // Accumulated opacity at which a ray ends; above 1 if it never does.
+    termination_alpha: f32,
+    // Step of a shadow ray, texture space.
+    shadow_step: vec3f,
+    // Value integral to grey level.
+    xray_scale: f32,
+    // Colour of the isosurface.
+    surface_rgb: vec3f,
+    // Normalised value of the isosurface.
+    isovalue: f32,
+    // Values outside this closed interval are transparent.
+    visible: vec2f,
+    // Entries of the table along value and along its second coordinate.
+    lut_size: vec2u,
+    // Directions of directional shading in use.
+    direction_count: u32,
+    // Unit directions, metric space; their absolute components are the light's colour.
+    directions: array<vec4f, 64>,
+}
+
+@group(0) @binding(0) var<uniform> parameters: CastParameters;

@@ -1,0 +1,7 @@
+// A classified sample.
+struct Classified {
+    // Colour and log2 transmittance of one voxel length.
+    entry: vec4f,
+    // Gradient in metric space, where CLASSIFIER_HAS_GRADIENT.
+    gradient: vec3f,
+}

@@ -1,0 +1,22 @@
+import package::lib::cast_parameters::{parameters};
+import package::lib::classified::{Classified};
+import package::lib::lut::{lut_at};
+import package::lib::volume::{value_at};
+
+// One-dimensional transfer function.
+
+const CLASSIFIER_HAS_GRADIENT = false;
+
+// Whether a sample may be visible, from its value and the one before it on the ray.
+fn may_be_visible(value: f32, previous: f32) -> bool {
+    return value >= parameters.visible.x && value <= parameters.visible.y;
+}
+
+fn classify(position: vec3f, value: f32, previous: f32) -> Classified {
+    return Classified(lut_at(value), vec3f(0.0));
+}
+
+// Log2 transmittance of one voxel length, for shading rays.
+fn log2_transmittance_at(position: vec3f) -> f32 {
+    return lut_at(value_at(position)).w;
+}

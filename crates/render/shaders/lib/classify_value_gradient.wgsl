@@ -1,0 +1,25 @@
+import package::lib::cast_parameters::{parameters};
+import package::lib::classified::{Classified};
+import package::lib::gradient::{gradient_at};
+import package::lib::lut::{lut_at_2d};
+import package::lib::volume::{value_at};
+
+// Two-dimensional transfer function of value and gradient magnitude.
+
+const CLASSIFIER_HAS_GRADIENT = true;
+
+// Whether a sample may be visible, from its value and the one before it on the ray.
+fn may_be_visible(value: f32, previous: f32) -> bool {
+    return value >= parameters.visible.x && value <= parameters.visible.y;
+}
+
+fn classify(position: vec3f, value: f32, previous: f32) -> Classified {
+    let gradient = gradient_at(position);
+    return Classified(lut_at_2d(value, min(length(gradient), 1.0)), gradient);
+}
+
+// Log2 transmittance of one voxel length, for shading rays.
+fn log2_transmittance_at(position: vec3f) -> f32 {
+    let value = value_at(position);
+    return classify(position, value, value).entry.w;
+}

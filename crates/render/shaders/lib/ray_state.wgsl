@@ -1,0 +1,31 @@
+// What a ray has gathered so far; kept between dispatches when a ray is cast in several parts.
+struct RayState {
+    // Premultiplied colour.
+    color: vec3f,
+    // What still passes through.
+    transmittance: f32,
+    // Depth of the first hit, metres; NOTHING_HIT without one.
+    depth_m: f32,
+    // The value before, the best value or the sum of values: each accumulator's own.
+    scalar: f32,
+    // Samples taken.
+    samples: u32,
+    // 1 when no later sample can change the pixel.
+    is_finished: u32,
+}
+
+// Depth where nothing was hit: the largest f32, read back as infinity.
+const NOTHING_HIT: f32 = 3.4028234e38;
+
+struct Pixel {
+    // Premultiplied RGBA.
+    color: vec4f,
+    // Depth of the first hit, metres.
+    depth_m: f32,
+    // Samples taken along the ray, those of shading not counted.
+    samples: u32,
+}
+
+fn opaque_pixel(rgb: vec3f, state: RayState) -> Pixel {
+    return Pixel(vec4f(rgb, 1.0), state.depth_m, state.samples);
+}
