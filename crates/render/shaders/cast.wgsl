@@ -15,7 +15,7 @@ const ALL_SAMPLES: u32 = 0xffffffffu;
 
 // Casts a piece of a picture: `row_count` rows from `first_row`, samples [first_sample, first_sample + sample_limit).
 @compute @workgroup_size(8, 8)
-fn cast(@builtin(global_invocation_id) id: vec3u) {
+fn cast_rays(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= view.width || id.y >= view.row_count {
         return;
     }

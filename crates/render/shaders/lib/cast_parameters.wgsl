@@ -1,4 +1,4 @@
-// Mirror of `shared::CastUniform`.
+// Mirror of `uniforms::CastUniform`.
 
 struct CastParameters {
     // Voxels along each axis.

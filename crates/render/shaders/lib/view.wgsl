@@ -1,4 +1,4 @@
-// Mirror of `shared::ViewUniform`: the rays of a view, affine in the pixel coordinates, in texture space.
+// Mirror of `uniforms::ViewUniform`: the rays of a view, affine in the pixel coordinates, in texture space.
 
 struct View {
     // Origin at the picture's top left corner.

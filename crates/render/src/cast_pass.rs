@@ -1,0 +1,294 @@
+//! The cast pass: pipelines of the kernel's variants, and the dispatch of one piece of a picture.
+
+use crate::gpu::{Gpu, GpuError};
+use crate::shader::compose;
+use crate::target::Target;
+use crate::uniforms::{CastUniform, ViewUniform};
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+use wheatstone_core::cast::{CastParameters, Classifier, SHADOW_SAMPLES};
+use wheatstone_core::scene::{GradientMethod, Mode, Shading};
+
+/// Side of a workgroup, pixels; `@workgroup_size` of `cast.wgsl`.
+const WORKGROUP: u32 = 8;
+
+/// Bytes of a `RayState`.
+pub(crate) const RAY_STATE_BYTES: u64 = 32;
+
+/// Which files make up a kernel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Variant {
+    accumulator: &'static str,
+    classifier: &'static str,
+    shading: &'static str,
+    gradient: &'static str,
+}
+
+impl Variant {
+    /// The kernel for some parameters.
+    pub(crate) fn of(parameters: &CastParameters) -> Self {
+        let (accumulator, is_shaded) = match parameters.mode {
+            Mode::Composite => ("lib/accumulate_composite", true),
+            Mode::Mip => ("lib/accumulate_mip", false),
+            Mode::MinIp => ("lib/accumulate_minip", false),
+            Mode::Mean => ("lib/accumulate_mean", false),
+            Mode::XRay => ("lib/accumulate_xray", false),
+            Mode::Isosurface { .. } => ("lib/accumulate_first_hit", true),
+        };
+        Self {
+            accumulator,
+            classifier: match parameters.classifier {
+                Classifier::Value => "lib/classify_value",
+                Classifier::ValueGradient => "lib/classify_value_gradient",
+                Classifier::PreIntegrated => "lib/classify_preintegrated",
+                Classifier::Isovalue => "lib/classify_isovalue",
+            },
+            shading: match parameters.shading {
+                _ if !is_shaded => "lib/shade_none",
+                Shading::None => "lib/shade_none",
+                Shading::Phong => "lib/shade_phong",
+                Shading::Shadow => "lib/shade_shadow",
+                Shading::Ambient => "lib/shade_ambient",
+                Shading::Directional { .. } => "lib/shade_directional",
+            },
+            gradient: match parameters.gradient {
+                GradientMethod::CentralDifferences => "lib/gradient_central",
+                GradientMethod::Tetrahedron => "lib/gradient_tetrahedron",
+            },
+        }
+    }
+
+    /// Every kernel that parameters can ask for.
+    #[cfg(test)]
+    fn all() -> Vec<Self> {
+        let gradients = ["lib/gradient_central", "lib/gradient_tetrahedron"];
+        let classifiers = ["lib/classify_value", "lib/classify_value_gradient", "lib/classify_preintegrated"];
+        let shadings = ["lib/shade_none", "lib/shade_phong", "lib/shade_shadow", "lib/shade_ambient", "lib/shade_directional"];
+        let projections = ["lib/accumulate_mip", "lib/accumulate_minip", "lib/accumulate_mean", "lib/accumulate_xray"];
+        let mut all = Vec::new();
+        for gradient in gradients {
+            for shading in shadings {
+                for classifier in classifiers {
+                    all.push(Self { accumulator: "lib/accumulate_composite", classifier, shading, gradient });
+                }
+                let classifier = "lib/classify_isovalue";
+                all.push(Self { accumulator: "lib/accumulate_first_hit", classifier, shading, gradient });
+            }
+        }
+        for accumulator in projections {
+            for classifier in classifiers {
+                all.push(Self { accumulator, classifier, shading: "lib/shade_none", gradient: gradients[0] });
+            }
+        }
+        all
+    }
+
+    fn choices(&self) -> [(&'static str, &'static str); 4] {
+        [
+            ("lib/accumulate", self.accumulator),
+            ("lib/classify", self.classifier),
+            ("lib/shade", self.shading),
+            ("lib/gradient", self.gradient),
+        ]
+    }
+}
+
+/// Loop iterations that a visible sample costs at most.
+pub(crate) fn iterations_per_sample(parameters: &CastParameters) -> u32 {
+    1 + match parameters.shading {
+        Shading::None | Shading::Phong => 0,
+        Shading::Shadow => SHADOW_SAMPLES,
+        Shading::Ambient => 14,
+        Shading::Directional { .. } => parameters.directions.len() as u32,
+    }
+}
+
+/// Layouts of the cast pass and the pipelines built so far.
+#[derive(Debug)]
+pub(crate) struct CastPass {
+    pub(crate) frame_layout: wgpu::BindGroupLayout,
+    pub(crate) volume_layout: wgpu::BindGroupLayout,
+    pub(crate) target_layout: wgpu::BindGroupLayout,
+    layout: wgpu::PipelineLayout,
+    pipelines: HashMap<Variant, wgpu::ComputePipeline>,
+}
+
+impl CastPass {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let frame_layout = bind_group_layout(
+            device,
+            "frame",
+            &[uniform::<CastUniform>(), uniform::<ViewUniform>()],
+        );
+        let volume_layout = bind_group_layout(
+            device,
+            "volume",
+            &[
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                    view_dimension: wgpu::TextureViewDimension::D3,
+                    multisampled: false,
+                },
+                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                storage_buffer(true, 16),
+            ],
+        );
+        let target_layout = bind_group_layout(
+            device,
+            "target",
+            &[
+                storage_texture(wgpu::TextureFormat::Rgba32Float),
+                storage_texture(wgpu::TextureFormat::Rg32Float),
+                storage_buffer(false, RAY_STATE_BYTES),
+            ],
+        );
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("cast"),
+            bind_group_layouts: &[Some(&frame_layout), Some(&volume_layout), Some(&target_layout)],
+            immediate_size: 0,
+        });
+        Self { frame_layout, volume_layout, target_layout, layout, pipelines: HashMap::new() }
+    }
+
+    /// The pipeline of a variant, built when first asked for.
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] if the driver does not take the kernel.
+    pub(crate) fn pipeline(&mut self, gpu: &Gpu, variant: Variant) -> Result<wgpu::ComputePipeline, GpuError> {
+        if let Some(pipeline) = self.pipelines.get(&variant) {
+            return Ok(pipeline.clone());
+        }
+        let pipeline = build_pipeline(&gpu.device, &self.layout, variant)?;
+        gpu.check()?;
+        self.pipelines.insert(variant, pipeline.clone());
+        Ok(pipeline)
+    }
+}
+
+fn build_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    variant: Variant,
+) -> Result<wgpu::ComputePipeline, GpuError> {
+    let source = compose("cast", &variant.choices())
+        .map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("cast"),
+        source: wgpu::ShaderSource::Wgsl(source.text.into()),
+    });
+    Ok(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("cast"),
+        layout: Some(layout),
+        module: &module,
+        entry_point: Some("cast_rays"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    }))
+}
+
+/// Bind groups of one dispatch.
+pub(crate) struct Bindings<'a> {
+    pub(crate) frame: &'a wgpu::BindGroup,
+    pub(crate) volume: &'a wgpu::BindGroup,
+    pub(crate) target: &'a wgpu::BindGroup,
+}
+
+/// Submits one piece of `rows` rows.
+pub(crate) fn dispatch(
+    gpu: &Gpu,
+    pipeline: &wgpu::ComputePipeline,
+    bindings: &Bindings<'_>,
+    target: &Target,
+    rows: u32,
+) {
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, bindings.frame, &[]);
+        pass.set_bind_group(1, bindings.volume, &[]);
+        pass.set_bind_group(2, bindings.target, &[]);
+        pass.dispatch_workgroups(target.size()[0].div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+}
+
+fn bind_group_layout(
+    device: &wgpu::Device,
+    label: &str,
+    types: &[wgpu::BindingType],
+) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+fn uniform<T>() -> wgpu::BindingType {
+    buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
+}
+
+fn storage_buffer(read_only: bool, smallest: u64) -> wgpu::BindingType {
+    buffer(wgpu::BufferBindingType::Storage { read_only }, smallest)
+}
+
+fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: NonZeroU64::new(smallest) }
+}
+
+fn storage_texture(format: wgpu::TextureFormat) -> wgpu::BindingType {
+    wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kernel_is_valid_wgsl() {
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::default(),
+        );
+        let variants = Variant::all();
+        let failures: Vec<String> = variants
+            .iter()
+            .filter_map(|variant| {
+                let source = compose("cast", &variant.choices()).unwrap();
+                let module = match naga::front::wgsl::parse_str(&source.text) {
+                    Ok(module) => module,
+                    Err(error) => {
+                        let line = error.location(&source.text).map_or(0, |l| l.line_number as usize);
+                        return Some(format!("{variant:?} {:?}: {}", source.origin(line), error.emit_to_string(&source.text)));
+                    }
+                };
+                validator.validate(&module).err().map(|error| format!("{variant:?}: {error:?}"))
+            })
+            .collect();
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+        assert_eq!(variants.len(), 52);
+    }
+
+    #[test]
+    fn every_pipeline_builds_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let pass = CastPass::new(&device);
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        for variant in Variant::all() {
+            build_pipeline(&device, &pass.layout, variant).unwrap();
+        }
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+}

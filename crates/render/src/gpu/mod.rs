@@ -1,0 +1,174 @@
+//! The device: which adapter, what it can do, and what went wrong.
+
+mod capabilities;
+mod error;
+
+pub use capabilities::{Capabilities, Tier};
+pub use error::GpuError;
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Longest time that a submission may take before the device counts as hung.
+const SUBMISSION_TIMEOUT: Duration = Duration::from_secs(120);
+
+/// What an adapter says of itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdapterDescription {
+    /// Device name.
+    pub name: String,
+    /// Driver name and version.
+    pub driver: String,
+    /// Graphics API, such as `vulkan`.
+    pub backend: String,
+    /// Whether it runs on the CPU.
+    pub is_software: bool,
+    /// What it offers.
+    pub capabilities: Capabilities,
+}
+
+/// A GPU device and its queue.
+///
+/// Errors that `wgpu` reports late are kept and returned by the next [`Gpu::check`], which every operation of
+/// this crate calls.
+#[derive(Debug)]
+pub struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    description: AdapterDescription,
+    fault: Arc<Mutex<Option<GpuError>>>,
+}
+
+/// Every adapter that could be used, the best first: discrete, integrated, virtual, other, software.
+pub fn adapters() -> Vec<AdapterDescription> {
+    ranked_adapters().iter().map(describe).collect()
+}
+
+impl Gpu {
+    /// Opens the best adapter, software included.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] if there is none, [`GpuError::Device`] if it cannot be opened.
+    pub fn open_best() -> Result<Self, GpuError> {
+        Self::open(|_| true)
+    }
+
+    /// Opens the best hardware adapter.
+    ///
+    /// # Errors
+    /// As [`Gpu::open_best`].
+    pub fn open_hardware() -> Result<Self, GpuError> {
+        Self::open(|adapter| !adapter.is_software)
+    }
+
+    /// Opens the best adapter that runs on the CPU, for tests that must not depend on a GPU.
+    ///
+    /// # Errors
+    /// As [`Gpu::open_best`].
+    pub fn open_software() -> Result<Self, GpuError> {
+        Self::open(|adapter| adapter.is_software)
+    }
+
+    /// Opens the best of the adapters that a predicate accepts.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] if none is accepted, [`GpuError::Device`] if it cannot be opened.
+    pub fn open(accept: impl Fn(&AdapterDescription) -> bool) -> Result<Self, GpuError> {
+        let candidates = ranked_adapters();
+        let found = candidates.len();
+        let (adapter, description) = candidates
+            .into_iter()
+            .map(|adapter| {
+                let description = describe(&adapter);
+                (adapter, description)
+            })
+            .find(|(_, description)| accept(description))
+            .ok_or(GpuError::NoAdapter { found })?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("wheatstone"),
+            required_features: Capabilities::wanted_features() & adapter.features(),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        }))
+        .map_err(|error| GpuError::Device { adapter: description.name.clone(), reason: error.to_string() })?;
+        Ok(Self::from_parts(device, queue, description))
+    }
+
+    fn from_parts(device: wgpu::Device, queue: wgpu::Queue, description: AdapterDescription) -> Self {
+        let fault = Arc::new(Mutex::new(None));
+        let keep_first = |fault: &Mutex<Option<GpuError>>, error: GpuError| {
+            fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        };
+        let on_error = Arc::clone(&fault);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            keep_first(&on_error, GpuError::from(error));
+        }));
+        let on_loss = Arc::clone(&fault);
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                keep_first(&on_loss, GpuError::Lost { reason: message });
+            }
+        });
+        Self { device, queue, description, fault }
+    }
+
+    /// What was opened.
+    pub fn description(&self) -> &AdapterDescription {
+        &self.description
+    }
+
+    /// What the device offers.
+    pub fn capabilities(&self) -> &Capabilities {
+        &self.description.capabilities
+    }
+
+    /// Returns the first error reported since the last check.
+    ///
+    /// # Errors
+    /// Whatever the device reported.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match self.fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            Some(error) => Err(error),
+            None => Ok(()),
+        }
+    }
+
+    /// Waits until all submitted work is done, then checks for errors.
+    ///
+    /// # Errors
+    /// [`GpuError::Hung`] after two minutes, and whatever the device reported.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let polled = self
+            .device
+            .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(SUBMISSION_TIMEOUT) });
+        self.check()?;
+        polled.map(drop).map_err(|_| GpuError::Hung { seconds: SUBMISSION_TIMEOUT.as_secs() })
+    }
+}
+
+fn ranked_adapters() -> Vec<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::PRIMARY,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    adapters
+}
+
+fn describe(adapter: &wgpu::Adapter) -> AdapterDescription {
+    let info = adapter.get_info();
+    AdapterDescription {
+        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        backend: info.backend.to_string(),
+        is_software: info.device_type == wgpu::DeviceType::Cpu,
+        capabilities: Capabilities::of(adapter),
+        name: info.name,
+    }
+}

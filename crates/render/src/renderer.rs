@@ -1,0 +1,197 @@
+//! The renderer: what is kept between frames, and the one loop over views.
+
+use crate::cast_pass::{self, Bindings, CastPass, RAY_STATE_BYTES, Variant};
+use crate::gpu::{Gpu, GpuError};
+use crate::pacer::{Pacer, sample_limit};
+use crate::target::Target;
+use crate::uniforms::{CastUniform, ViewUniform};
+use crate::volume::GpuVolume;
+use std::time::Instant;
+use wgpu::util::DeviceExt as _;
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::reference::Cast;
+use wheatstone_core::view::View;
+
+/// Most bytes of ray states between dispatches.
+const MOST_STATE_BYTES: u64 = 64 << 20;
+
+/// Pipelines and pacing, made once per device.
+#[derive(Debug)]
+pub struct Renderer {
+    cast_pass: CastPass,
+    sampler: wgpu::Sampler,
+    pacer: Pacer,
+}
+
+/// A volume with the settings that it is shown with, ready to be cast from any view. Made once per change of
+/// either.
+#[derive(Debug)]
+pub struct Prepared {
+    parameters: CastParameters,
+    pipeline: wgpu::ComputePipeline,
+    view_uniform: wgpu::Buffer,
+    frame: wgpu::BindGroup,
+    volume: wgpu::BindGroup,
+    sample_limit: u32,
+}
+
+impl Renderer {
+    /// Makes what is kept for a device.
+    ///
+    /// # Errors
+    /// A device that refuses or is lost.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let cast_pass = CastPass::new(&gpu.device);
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("trilinear"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        gpu.check()?;
+        Ok(Self { cast_pass, sampler, pacer: Pacer::new() })
+    }
+
+    /// Prepares a volume to be cast with some parameters.
+    ///
+    /// # Errors
+    /// A kernel that the driver refuses, no memory, a lost device.
+    pub fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        volume: &GpuVolume,
+        parameters: CastParameters,
+    ) -> Result<Prepared, GpuError> {
+        let pipeline = self.cast_pass.pipeline(gpu, Variant::of(&parameters))?;
+        let map = volume.normalised_from_sampled(parameters.window);
+        let cast_uniform = init_buffer(
+            gpu,
+            "cast parameters",
+            bytemuck::bytes_of(&CastUniform::new(&parameters, volume.dims, map)),
+            wgpu::BufferUsages::UNIFORM,
+        );
+        let view_uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("view"),
+            size: size_of::<ViewUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let lut = init_buffer(
+            gpu,
+            "lut",
+            bytemuck::cast_slice(parameters.lut.entries()),
+            wgpu::BufferUsages::STORAGE,
+        );
+        let frame = bind_group(
+            gpu,
+            &self.cast_pass.frame_layout,
+            &[cast_uniform.as_entire_binding(), view_uniform.as_entire_binding()],
+        );
+        let volume = bind_group(
+            gpu,
+            &self.cast_pass.volume_layout,
+            &[
+                wgpu::BindingResource::TextureView(&volume.texture),
+                wgpu::BindingResource::Sampler(&self.sampler),
+                lut.as_entire_binding(),
+            ],
+        );
+        gpu.check()?;
+        let sample_limit =
+            sample_limit(parameters.most_samples_per_ray(), cast_pass::iterations_per_sample(&parameters));
+        Ok(Prepared { parameters, pipeline, view_uniform, frame, volume, sample_limit })
+    }
+
+    /// Casts each view into its target and waits until all are done.
+    ///
+    /// # Errors
+    /// No memory, a lost or hung device.
+    ///
+    /// # Panics
+    /// If there are not as many targets as views, or a target has another size than its view.
+    pub fn render(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        views: &[View],
+        targets: &[Target],
+    ) -> Result<(), GpuError> {
+        assert_eq!(views.len(), targets.len(), "one target per view");
+        for (view, target) in views.iter().zip(targets) {
+            assert_eq!(view.size, target.size(), "a target has the size of its view");
+            self.cast(gpu, prepared, view, target)?;
+        }
+        Ok(())
+    }
+
+    /// Casts views into targets made for them, and reads the pictures back.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_to_host(&mut self, gpu: &Gpu, prepared: &Prepared, views: &[View]) -> Result<Vec<Cast>, GpuError> {
+        let targets: Vec<Target> = views.iter().map(|v| Target::new(gpu, v.size)).collect::<Result<_, _>>()?;
+        self.render(gpu, prepared, views, &targets)?;
+        targets.iter().map(|target| target.read(gpu)).collect()
+    }
+
+    /// Casts one view piece by piece.
+    fn cast(&mut self, gpu: &Gpu, prepared: &Prepared, view: &View, target: &Target) -> Result<(), GpuError> {
+        let [width, height] = view.size;
+        let is_segmented = prepared.sample_limit != u32::MAX;
+        let state_row_bytes = u64::from(width) * RAY_STATE_BYTES;
+        let most_rows = if is_segmented { (MOST_STATE_BYTES / state_row_bytes).max(1) as u32 } else { height };
+        let state_rows = if is_segmented { most_rows.min(height) } else { 0 };
+        let states = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("ray states"),
+            size: (u64::from(state_rows) * state_row_bytes).max(RAY_STATE_BYTES),
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        let color = target.color.create_view(&wgpu::TextureViewDescriptor::default());
+        let depth = target.depth.create_view(&wgpu::TextureViewDescriptor::default());
+        let target_group = bind_group(
+            gpu,
+            &self.cast_pass.target_layout,
+            &[
+                wgpu::BindingResource::TextureView(&color),
+                wgpu::BindingResource::TextureView(&depth),
+                states.as_entire_binding(),
+            ],
+        );
+        let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target_group };
+
+        let mut piece = ViewUniform::new(&prepared.parameters, view);
+        piece.sample_limit = prepared.sample_limit;
+        let most_samples = prepared.parameters.most_samples_per_ray();
+        while piece.first_row < height {
+            piece.row_count = self.pacer.rows(width, height - piece.first_row).min(most_rows);
+            piece.first_sample = 0;
+            while piece.first_sample < most_samples {
+                gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
+                let start = Instant::now();
+                cast_pass::dispatch(gpu, &prepared.pipeline, &bindings, target, piece.row_count);
+                gpu.wait()?;
+                self.pacer.learn(piece.row_count * width, start.elapsed());
+                piece.first_sample = piece.first_sample.saturating_add(piece.sample_limit);
+            }
+            piece.first_row += piece.row_count;
+        }
+        Ok(())
+    }
+}
+
+fn init_buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+}
+
+fn bind_group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}

@@ -1,0 +1,107 @@
+//! Where a view is cast to: colour, depth and sample counts of one picture, and their way back to the host.
+
+use crate::gpu::{Gpu, GpuError};
+use wheatstone_core::image::Image;
+use wheatstone_core::reference::Cast;
+
+/// The largest f32: `NOTHING_HIT` of `lib/ray_state.wgsl`.
+const NOTHING_HIT: f32 = f32::MAX;
+
+/// Textures of one picture on the device.
+#[derive(Debug)]
+pub struct Target {
+    size: [u32; 2],
+    /// RGBA, premultiplied, 32-bit float.
+    pub(crate) color: wgpu::Texture,
+    /// Depth of the first hit in metres, and samples taken; 32-bit float.
+    pub(crate) depth: wgpu::Texture,
+}
+
+impl Target {
+    /// Makes the textures of a picture.
+    ///
+    /// # Errors
+    /// [`GpuError::PictureSize`] for an empty or too large picture, no memory, a lost device.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        let [width, height] = size;
+        let allowed = gpu.capabilities().largest_2d_side;
+        if !(1..=allowed).contains(&width) || !(1..=allowed).contains(&height) {
+            return Err(GpuError::PictureSize { width, height, allowed });
+        }
+        let texture = |label, format| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::STORAGE_BINDING
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let color = texture("color target", wgpu::TextureFormat::Rgba32Float);
+        let depth = texture("depth target", wgpu::TextureFormat::Rg32Float);
+        gpu.check()?;
+        Ok(Self { size, color, depth })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Reads the picture back.
+    ///
+    /// # Errors
+    /// No memory, a lost or hung device.
+    pub fn read(&self, gpu: &Gpu) -> Result<Cast, GpuError> {
+        let color: Vec<[f32; 4]> = self.read_texture(gpu, &self.color)?;
+        let depth_and_samples: Vec<[f32; 2]> = self.read_texture(gpu, &self.depth)?;
+        let depth_m = depth_and_samples
+            .iter()
+            .map(|&[depth_m, _]| if depth_m == NOTHING_HIT { f32::INFINITY } else { depth_m })
+            .collect();
+        let samples = depth_and_samples.iter().map(|&[_, samples]| samples as u64).sum();
+        let [width, height] = self.size;
+        Ok(Cast { image: Image { width, height, color, depth_m }, samples })
+    }
+
+    fn read_texture<T: bytemuck::Pod>(&self, gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {
+        let [width, height] = self.size;
+        let row_bytes = width as usize * size_of::<T>();
+        let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("readback"),
+            size: (padded_row_bytes * height as usize) as u64,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded_row_bytes as u32),
+                    rows_per_image: None,
+                },
+            },
+            texture.size(),
+        );
+        gpu.queue.submit([encoder.finish()]);
+        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        gpu.wait()?;
+        let refused = |error: &dyn std::fmt::Display| GpuError::Refused { reason: error.to_string() };
+        let mapped = buffer.slice(..).get_mapped_range().map_err(|error| refused(&error))?;
+        let pixels = mapped
+            .chunks(padded_row_bytes)
+            .flat_map(|row| bytemuck::cast_slice::<u8, T>(&row[..row_bytes]))
+            .copied()
+            .collect();
+        Ok(pixels)
+    }
+}

@@ -1,0 +1,171 @@
+//! Mirrors of the WGSL structs. Nothing else defines data shared with shaders; a test compares every field with
+//! naga's layout.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Mat3, Vec3};
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::scene::MAX_DIRECTIONS;
+use wheatstone_core::view::{RayField, View};
+
+/// A WGSL `mat3x3f`: columns padded to 16 bytes.
+type Columns = [[f32; 4]; 3];
+
+/// Mirror of `lib/cast_parameters.wgsl`, where the fields are described.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct CastUniform {
+    pub(crate) dims: [f32; 3],
+    pub(crate) sampling_factor: f32,
+    pub(crate) box_lo: [f32; 3],
+    pub(crate) value_scale: f32,
+    pub(crate) box_hi: [f32; 3],
+    pub(crate) value_offset: f32,
+    pub(crate) plane: [f32; 4],
+    pub(crate) metric_from_texture: Columns,
+    pub(crate) texture_from_metric: Columns,
+    pub(crate) to_light: [f32; 3],
+    pub(crate) termination_alpha: f32,
+    pub(crate) shadow_step: [f32; 3],
+    pub(crate) xray_scale: f32,
+    pub(crate) surface_rgb: [f32; 3],
+    pub(crate) isovalue: f32,
+    pub(crate) visible: [f32; 2],
+    pub(crate) lut_size: [u32; 2],
+    pub(crate) direction_count: u32,
+    pub(crate) padding: [u32; 3],
+    pub(crate) directions: [[f32; 4]; MAX_DIRECTIONS as usize],
+}
+
+/// Mirror of `lib/view.wgsl`, where the fields are described.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct ViewUniform {
+    pub(crate) origin: [f32; 3],
+    pub(crate) near_m: f32,
+    pub(crate) origin_dx: [f32; 3],
+    pub(crate) far_m: f32,
+    pub(crate) origin_dy: [f32; 3],
+    pub(crate) width: u32,
+    pub(crate) direction: [f32; 3],
+    pub(crate) height: u32,
+    pub(crate) direction_dx: [f32; 3],
+    pub(crate) first_row: u32,
+    pub(crate) direction_dy: [f32; 3],
+    pub(crate) row_count: u32,
+    pub(crate) first_sample: u32,
+    pub(crate) sample_limit: u32,
+    pub(crate) padding: [u32; 2],
+}
+
+impl CastUniform {
+    /// The parameters of a cast over a volume whose texels map to normalised values by `scale` and `offset`.
+    pub(crate) fn new(parameters: &CastParameters, dims: [usize; 3], (scale, offset): (f64, f64)) -> Self {
+        let mut directions = [[0.0; 4]; MAX_DIRECTIONS as usize];
+        for (slot, direction) in directions.iter_mut().zip(&parameters.directions) {
+            *slot = direction.extend(0.0).to_array();
+        }
+        let (visible_lo, visible_hi) = parameters.lut.visible();
+        Self {
+            dims: dims.map(|side| side as f32),
+            sampling_factor: parameters.sampling_factor,
+            box_lo: parameters.box_lo.to_array(),
+            value_scale: scale as f32,
+            box_hi: parameters.box_hi.to_array(),
+            value_offset: offset as f32,
+            plane: parameters.plane.to_array(),
+            metric_from_texture: columns(parameters.metric_from_texture),
+            texture_from_metric: columns(parameters.texture_from_metric),
+            to_light: parameters.to_light.to_array(),
+            termination_alpha: parameters.termination_alpha,
+            shadow_step: parameters.shadow_step.to_array(),
+            xray_scale: parameters.xray_scale,
+            surface_rgb: parameters.surface_rgb.to_array(),
+            isovalue: parameters.isovalue,
+            visible: [visible_lo, visible_hi],
+            lut_size: [parameters.lut.width() as u32, parameters.lut.height() as u32],
+            direction_count: parameters.directions.len() as u32,
+            padding: [0; 3],
+            directions,
+        }
+    }
+}
+
+impl ViewUniform {
+    /// The rays of a view, the whole picture as one piece.
+    pub(crate) fn new(parameters: &CastParameters, view: &View) -> Self {
+        let rays = RayField::new(view, parameters.texture_from_world);
+        let [width, height] = view.size;
+        Self {
+            origin: vector(rays.origin),
+            near_m: finite(rays.depth_range_m.0),
+            origin_dx: vector(rays.origin_dx),
+            far_m: finite(rays.depth_range_m.1),
+            origin_dy: vector(rays.origin_dy),
+            width,
+            direction: vector(rays.direction),
+            height,
+            direction_dx: vector(rays.direction_dx),
+            first_row: 0,
+            direction_dy: vector(rays.direction_dy),
+            row_count: height,
+            first_sample: 0,
+            sample_limit: u32::MAX,
+            padding: [0; 2],
+        }
+    }
+}
+
+fn vector(v: DVec3) -> [f32; 3] {
+    v.as_vec3().to_array()
+}
+
+/// WGSL has no infinity.
+fn finite(depth_m: f64) -> f32 {
+    depth_m.clamp(-1e30, 1e30) as f32
+}
+
+fn columns(m: Mat3) -> Columns {
+    let padded = |column: Vec3| column.extend(0.0).to_array();
+    [padded(m.x_axis), padded(m.y_axis), padded(m.z_axis)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compose;
+    use std::mem::offset_of;
+
+    fn struct_layout(file: &str, name: &str) -> (Vec<(String, u32)>, u32) {
+        let module = naga::front::wgsl::parse_str(&compose(file, &[]).unwrap().text).unwrap();
+        let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
+        let members = members.iter().map(|m| (m.name.clone().unwrap(), m.offset)).collect();
+        (members, *span)
+    }
+
+    macro_rules! assert_layout {
+        ($file:literal, $wgsl:literal, $rust:ty, [$($field:ident),* $(,)?]) => {
+            let (members, span) = struct_layout($file, $wgsl);
+            let mirror = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field) as u32)),*];
+            assert_eq!(members, mirror);
+            assert_eq!(span as usize, size_of::<$rust>());
+        };
+    }
+
+    #[test]
+    fn cast_uniform_matches_wgsl() {
+        assert_layout!("lib/cast_parameters", "CastParameters", CastUniform, [
+            dims, sampling_factor, box_lo, value_scale, box_hi, value_offset, plane, metric_from_texture,
+            texture_from_metric, to_light, termination_alpha, shadow_step, xray_scale, surface_rgb, isovalue,
+            visible, lut_size, direction_count, directions,
+        ]);
+    }
+
+    #[test]
+    fn view_uniform_matches_wgsl() {
+        assert_layout!("lib/view", "View", ViewUniform, [
+            origin, near_m, origin_dx, far_m, origin_dy, width, direction, height, direction_dx, first_row,
+            direction_dy, row_count, first_sample, sample_limit,
+        ]);
+    }
+}

@@ -1,0 +1,208 @@
+//! Upload: voxels into a 3D texture, slab by slab.
+
+use crate::gpu::{Capabilities, Gpu, GpuError};
+use half::f16;
+use wheatstone_core::volume::{Encoding, StorageKind, StoredVoxels, Volume, Window};
+
+/// Bytes of a slab: what is converted and staged at once.
+const SLAB_BYTES: usize = 16 << 20;
+
+/// Texel formats that volumes are held in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TexelFormat {
+    /// 8-bit normalised.
+    R8Unorm,
+    /// 16-bit normalised.
+    R16Unorm,
+    /// Half float that holds 8-bit numbers as they are.
+    R16FloatOf8Bit,
+    /// Half float that holds 16-bit numbers over 65535.
+    R16FloatOf16Bit,
+    /// 32-bit float.
+    R32Float,
+}
+
+impl TexelFormat {
+    /// The format for a precision on a device. Software devices filter 8-bit texels in 8-bit arithmetic, so they
+    /// get half floats, which hold the same numbers exactly.
+    pub fn choose(kind: StorageKind, capabilities: &Capabilities, is_software: bool) -> Self {
+        match kind {
+            StorageKind::U8 if is_software => Self::R16FloatOf8Bit,
+            StorageKind::U8 => Self::R8Unorm,
+            StorageKind::F32 if capabilities.has_f32_filtering => Self::R32Float,
+            StorageKind::U16 | StorageKind::F32 if capabilities.has_16bit_norm => Self::R16Unorm,
+            StorageKind::U16 | StorageKind::F32 => Self::R16FloatOf16Bit,
+        }
+    }
+
+    /// Bytes per voxel.
+    pub fn byte_size(self) -> usize {
+        match self {
+            Self::R8Unorm => 1,
+            Self::R16Unorm | Self::R16FloatOf8Bit | Self::R16FloatOf16Bit => 2,
+            Self::R32Float => 4,
+        }
+    }
+
+    fn wgpu(self) -> wgpu::TextureFormat {
+        match self {
+            Self::R8Unorm => wgpu::TextureFormat::R8Unorm,
+            Self::R16Unorm => wgpu::TextureFormat::R16Unorm,
+            Self::R16FloatOf8Bit | Self::R16FloatOf16Bit => wgpu::TextureFormat::R16Float,
+            Self::R32Float => wgpu::TextureFormat::R32Float,
+        }
+    }
+
+    fn storage_kind(self) -> StorageKind {
+        match self {
+            Self::R8Unorm | Self::R16FloatOf8Bit => StorageKind::U8,
+            Self::R16Unorm | Self::R16FloatOf16Bit => StorageKind::U16,
+            Self::R32Float => StorageKind::F32,
+        }
+    }
+
+    /// Stored number of a sampled one.
+    fn stored_per_sampled(self) -> f64 {
+        match self {
+            Self::R8Unorm => 255.0,
+            Self::R16Unorm | Self::R16FloatOf16Bit => 65535.0,
+            Self::R16FloatOf8Bit | Self::R32Float => 1.0,
+        }
+    }
+
+    fn texels(self, stored: &StoredVoxels) -> Vec<u8> {
+        let halves = |numbers: &mut dyn Iterator<Item = f32>| {
+            bytemuck::cast_slice(&numbers.map(f16::from_f32).collect::<Vec<f16>>()).to_vec()
+        };
+        match (self, stored) {
+            (Self::R16FloatOf8Bit, StoredVoxels::U8(v)) => {
+                let half_of = std::array::from_fn::<f16, 256, _>(|i| f16::from_f32(i as f32));
+                bytemuck::cast_slice(&v.iter().map(|&x| half_of[usize::from(x)]).collect::<Vec<f16>>()).to_vec()
+            }
+            (Self::R16FloatOf16Bit, StoredVoxels::U16(v)) => {
+                halves(&mut v.iter().map(|&x| f32::from(x) / 65535.0))
+            }
+            (_, StoredVoxels::U8(v)) => v.clone(),
+            (_, StoredVoxels::U16(v)) => bytemuck::cast_slice(v).to_vec(),
+            (_, StoredVoxels::F32(v)) => bytemuck::cast_slice(v).to_vec(),
+        }
+    }
+}
+
+/// A volume on the device.
+#[derive(Debug)]
+pub struct GpuVolume {
+    pub(crate) texture: wgpu::TextureView,
+    pub(crate) dims: [usize; 3],
+    format: TexelFormat,
+    encoding: Encoding,
+}
+
+impl GpuVolume {
+    /// Uploads a volume at the precision that loses nothing, as far as the device has it. `progress` is called
+    /// with the slices done and their total.
+    ///
+    /// # Errors
+    /// A volume beyond the device's limits, no memory, a lost device.
+    pub fn upload(
+        gpu: &Gpu,
+        volume: &Volume,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self, GpuError> {
+        let kind = StorageKind::lossless_for(volume);
+        let format = TexelFormat::choose(kind, gpu.capabilities(), gpu.description().is_software);
+        Self::upload_as(gpu, volume, format, progress)
+    }
+
+    /// Uploads a volume in a given format.
+    ///
+    /// # Errors
+    /// As [`GpuVolume::upload`].
+    pub fn upload_as(
+        gpu: &Gpu,
+        volume: &Volume,
+        format: TexelFormat,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self, GpuError> {
+        let dims = volume.grid().dims();
+        check_size(gpu.capabilities(), dims, format)?;
+        let [width, height, depth] = dims;
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("volume"),
+            size: extent(dims),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: format.wgpu(),
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        gpu.check()?;
+        let encoding = Encoding::new(volume, format.storage_kind());
+        let row_bytes = width * format.byte_size();
+        let slab_depth = (SLAB_BYTES / (row_bytes * height)).max(1);
+        for first_slice in (0..depth).step_by(slab_depth) {
+            let slices = slab_depth.min(depth - first_slice);
+            let voxels = first_slice * width * height..(first_slice + slices) * width * height;
+            gpu.queue.write_texture(
+                wgpu::TexelCopyTextureInfo {
+                    texture: &texture,
+                    mip_level: 0,
+                    origin: wgpu::Origin3d { x: 0, y: 0, z: first_slice as u32 },
+                    aspect: wgpu::TextureAspect::All,
+                },
+                &format.texels(&encoding.encode(volume.voxels(), voxels)),
+                wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row_bytes as u32),
+                    rows_per_image: Some(height as u32),
+                },
+                extent([width, height, slices]),
+            );
+            gpu.queue.submit([]);
+            gpu.wait()?;
+            progress(first_slice + slices, depth);
+        }
+        let texture = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self { texture, dims, format, encoding })
+    }
+
+    /// How the voxels are held.
+    pub fn format(&self) -> TexelFormat {
+        self.format
+    }
+
+    /// Bytes on the device.
+    pub fn byte_size(&self) -> u64 {
+        byte_size(self.dims, self.format)
+    }
+
+    /// Scale and offset from a sampled number to the normalised value.
+    pub(crate) fn normalised_from_sampled(&self, window: Window) -> (f64, f64) {
+        let (scale, offset) = self.encoding.normalised_from_stored(window);
+        (scale * self.format.stored_per_sampled(), offset)
+    }
+}
+
+fn byte_size(dims: [usize; 3], format: TexelFormat) -> u64 {
+    dims.iter().map(|&side| side as u64).product::<u64>() * format.byte_size() as u64
+}
+
+fn check_size(capabilities: &Capabilities, dims: [usize; 3], format: TexelFormat) -> Result<(), GpuError> {
+    let largest_side = dims.into_iter().max().unwrap_or(0);
+    let bytes = byte_size(dims, format);
+    if largest_side <= capabilities.largest_3d_side as usize && bytes <= capabilities.largest_texture {
+        return Ok(());
+    }
+    Err(GpuError::VolumeTooLarge {
+        dims,
+        bytes,
+        largest_side,
+        allowed_bytes: capabilities.largest_texture,
+        allowed_side: capabilities.largest_3d_side,
+    })
+}
+
+fn extent([width, height, depth]: [usize; 3]) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: depth as u32 }
+}
