@@ -38,7 +38,7 @@ pub enum Phantom {
     Sphere,
     /// The texture coordinate x: from ½/N to 1 − ½/N at the voxel centres.
     Ramp,
-    /// The test signal of Marschner and Lobb 1994 with f_M = 6 and α = 0.25.
+    /// The test signal of Marschner and Lobb 1994 with a frequency of 6 and α = 0.25.
     MarschnerLobb,
     /// The head of Shepp and Logan, in three dimensions and with Toft's contrast.
     SheppLogan,

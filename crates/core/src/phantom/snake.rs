@@ -20,10 +20,10 @@ const FLESH: f64 = 0.15;
 const SKIN: f64 = 0.30;
 const SKIN_WIDTH: f64 = 0.024;
 const BONE: f64 = 0.85;
-const BONE_EDGE: f64 = 0.006;
+const BONE_EDGE: f64 = 0.004;
 const VERTEBRA_SPACING: f64 = 0.042;
-const VERTEBRA_RADIUS: f64 = 0.0247;
-const RIB_RADIUS: f64 = 0.0018;
+const VERTEBRA_RADIUS: f64 = 0.0240;
+const RIB_RADIUS: f64 = 0.0030;
 
 pub(super) fn value(point: DVec3) -> f64 {
     let p = point - DVec3::new(0.5, 0.5, 0.0);

@@ -3,12 +3,20 @@
 //! Opacity is per unit length: α is the opacity of one voxel length, and a step of Δ voxel lengths
 //! contributes `1 − (1 − α)^Δ`. Colours are display-referred (as VTK and ParaView composite them).
 
+mod automatic;
 pub mod color_space;
 mod colormap;
+mod file;
+mod json;
 mod lut;
+mod preset;
 
+pub use automatic::{AUTOMATIC_BINS, automatic};
 pub use colormap::{Colormap, UnknownColormap};
+pub use file::{TransferFile, transfer_at_values};
+pub use json::{JSON_VERSION, TransferJsonError};
 pub use lut::{Lut, LutEntry, OPAQUE_LOG2};
+pub use preset::{Preset, UnknownPreset};
 
 use thiserror::Error;
 
