@@ -1,0 +1,11 @@
+//! Every format through the public API: what is read, what is refused, and what must never crash.
+
+mod build;
+mod files;
+mod metaimage;
+mod nifti;
+mod nrrd;
+mod orientation;
+mod properties;
+mod raw;
+mod real_files;

@@ -1,0 +1,11 @@
+//! Any bytes as a NRRD file, with and without a data file.
+
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use wheatstone_io::{Format, read_bytes};
+
+fuzz_target!(|bytes: &[u8]| {
+    let _ = read_bytes(Format::Nrrd, bytes, None);
+    let _ = read_bytes(Format::Nrrd, bytes, Some(&bytes[bytes.len() / 2..]));
+});
