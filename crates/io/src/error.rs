@@ -123,7 +123,7 @@ pub enum ReadError {
     TooLarge {
         /// Dimensions in the file.
         dims: [u64; 3],
-        /// Bytes of one voxel, in the file or in memory, whichever is larger.
+        /// Bytes of one voxel in memory.
         bytes_per_voxel: u64,
         /// [`MAX_VOXEL_BYTES`](crate::MAX_VOXEL_BYTES).
         limit_bytes: u64,

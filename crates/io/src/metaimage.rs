@@ -26,10 +26,15 @@ const FIRST_KEYS: [&str; 8] = [
 
 /// Whether a file starts as MetaImage files do, which have no signature: with `Key = value` of a key known to come first.
 pub(crate) fn is_magic(start: &[u8]) -> bool {
-    let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    let Some(equals) = line.iter().position(|&byte| byte == b'=') else { return false };
+    first_key(start).is_some_and(|key| FIRST_KEYS.iter().any(|first| first.as_bytes() == key))
+}
+
+/// The key of the first line, if that is `Key = value`.
+fn first_key(start: &[u8]) -> Option<&[u8]> {
+    let line = start.split(|&byte| byte == b'\n').next()?;
+    let equals = line.iter().position(|&byte| byte == b'=')?;
     let key = line[..equals].trim_ascii();
-    FIRST_KEYS.iter().any(|first| first.as_bytes() == key)
+    key.iter().all(u8::is_ascii_alphanumeric).then_some(key)
 }
 
 /// Keys in lower case with their values.
@@ -81,8 +86,8 @@ impl Fields {
     fn flag(&self, keys: &[&'static str], default: bool) -> Result<bool, ReadError> {
         let Some((key, value)) = self.any(keys) else { return Ok(default) };
         match value.to_ascii_lowercase().as_str() {
-            "true" | "1" => Ok(true),
-            "false" | "0" => Ok(false),
+            "true" | "t" | "1" => Ok(true),
+            "false" | "f" | "0" => Ok(false),
             _ => Err(ReadError::bad_field(key, value, "True or False")),
         }
     }
@@ -178,7 +183,7 @@ impl Data {
 
 pub(crate) fn read(mut stream: Stream<'_>, siblings: Siblings<'_>) -> Result<Loaded, ReadError> {
     let start = stream.peek(512)?;
-    if !is_magic(&start) {
+    if first_key(&start).is_none() {
         let found = start[..start.len().min(32)].escape_ascii().to_string();
         return Err(ReadError::WrongMagic { found, expected: "`ObjectType = Image` or `NDims = …`" });
     }
@@ -210,7 +215,7 @@ pub(crate) fn read(mut stream: Stream<'_>, siblings: Siblings<'_>) -> Result<Loa
     };
     let size = |axis: usize| sizes.get(axis).copied().unwrap_or(1);
     let (dims, voxel_count) =
-        voxel_data::checked_voxel_count([size(0), size(1), size(2)], scalar.byte_size() * components)?;
+        voxel_data::checked_voxel_count([size(0), size(1), size(2)], scalar.byte_size())?;
     let (matrix, field) = fields.patient_from_index(axis_count, &mut warnings)?;
     let grid = geometry::grid(dims, matrix, field)?;
     let frames = sizes.iter().skip(3).fold(1_u64, |product, &size| product.saturating_mul(size));
@@ -221,12 +226,17 @@ pub(crate) fn read(mut stream: Stream<'_>, siblings: Siblings<'_>) -> Result<Loa
         warnings.push(Warning::FirstComponentOnly { components: components as u64 });
     }
 
-    let big_endian = fields.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"], false)?;
+    let byte_order_keys = ["BinaryDataByteOrderMSB", "ElementByteOrderMSB"];
+    let is_binary = fields.flag(&["BinaryData"], true)?;
+    if scalar.byte_size() > 1 && is_binary && fields.any(&byte_order_keys).is_none() {
+        warnings.push(Warning::ByteOrderAssumed);
+    }
+    let big_endian = fields.flag(&byte_order_keys, false)?;
     let mut layout = Layout::dense(scalar, big_endian, voxel_count).with_components(components);
     layout.ends_stream = frames == 1;
     let data = Data {
         layout,
-        is_binary: fields.flag(&["BinaryData"], true)?,
+        is_binary,
         is_compressed: fields.flag(&["CompressedData"], false)?,
         header_bytes: fields.optional("HeaderSize").map_or(Ok(0), |text| {
             text_header::number("HeaderSize", text, "a whole number of bytes, 0 or more, or -1")

@@ -286,7 +286,10 @@ pub(crate) fn read(mut stream: Stream<'_>, siblings: Siblings<'_>) -> Result<Loa
     let mut warnings = Vec::new();
     let (dims, frames) = header.dims_and_frames()?;
     let (scalar, components) = header.scalar()?;
-    let (dims, voxel_count) = voxel_data::checked_voxel_count(dims, scalar.byte_size().max(4) * components)?;
+    let is_colour = matches!(header.datatype, 128 | 2304);
+    let is_scaled = header.slope != 0.0 && (header.slope, header.intercept) != (1.0, 0.0) && !is_colour;
+    let bytes_per_voxel = scalar.byte_size().max(if is_scaled { size_of::<f32>() } else { 1 });
+    let (dims, voxel_count) = voxel_data::checked_voxel_count(dims, bytes_per_voxel)?;
     let (matrix, field) = header.patient_from_index(&mut warnings);
     let grid = geometry::grid(dims, matrix, field)?;
     if frames > 1 {
@@ -306,8 +309,7 @@ pub(crate) fn read(mut stream: Stream<'_>, siblings: Siblings<'_>) -> Result<Loa
     let voxels =
         if version.detached { siblings.read_nifti_image(read_voxels)? } else { read_voxels(stream)? };
 
-    let is_colour = matches!(header.datatype, 128 | 2304);
-    let voxels = if header.slope == 0.0 || is_colour {
+    let voxels = if !is_scaled {
         voxels
     } else if header.slope.is_finite() && header.intercept.is_finite() {
         voxel_data::rescale(voxels, header.slope, header.intercept)

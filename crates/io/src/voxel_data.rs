@@ -4,7 +4,7 @@ use crate::{ReadError, Warning, stream::Stream};
 use std::str::FromStr;
 use wheatstone_core::volume::{VoxelType, Voxels};
 
-/// Most bytes of voxels that are loaded, counted in the file's type and in memory: 16 GiB.
+/// Most bytes that the voxels of a volume may take in memory: 16 GiB.
 ///
 /// Files that declare more are refused before anything is allocated.
 pub const MAX_VOXEL_BYTES: u64 = 1 << 34;

@@ -128,7 +128,8 @@ fn paths_that_are_no_volumes_are_refused() {
     let folder_named_as_volume = folder.path().join("folder.nrrd");
     fs::create_dir(&folder_named_as_volume).unwrap();
     assert!(matches!(refused(&folder_named_as_volume), ReadError::NotAFile { found: "directory" }));
-    let cases: [(&str, &[u8], fn(&ReadError) -> bool); 7] = [
+    type Check = fn(&ReadError) -> bool;
+    let cases: [(&str, &[u8], Check); 7] = [
         ("empty.nii", b"", |e| matches!(e, ReadError::Empty)),
         ("text.txt", b"hello", |e| matches!(e, ReadError::UnknownFormat)),
         ("unnamed.raw", b"hello", |e| matches!(e, ReadError::RawName)),

@@ -101,9 +101,16 @@ fn images_of_two_dimensions_get_a_third() {
 #[test]
 fn wide_integers_become_f64() {
     let data: Vec<u8> = (0..24_u64).flat_map(u64::to_le_bytes).collect();
-    let loaded = load(META, &with_data(&header("ElementType = MET_ULONG_LONG\n"), &data));
+    let loaded =
+        load(META, &with_data(&header("ElementType = MET_ULONG_LONG\nElementByteOrderMSB = False\n"), &data));
     assert_eq!(loaded.warnings, [Warning::ConvertedToFloat64 { from: "uint64" }]);
     assert_eq!(values_of(&loaded), counted());
+}
+
+#[test]
+fn a_missing_byte_order_is_told() {
+    let file = with_data(&header("ElementType = MET_SHORT\n").replace("4 3 2", "2 3 2"), &bytes());
+    assert_eq!(load(META, &file).warnings, [Warning::ByteOrderAssumed]);
 }
 
 #[test]
@@ -135,7 +142,7 @@ fn bad_headers_are_refused() {
     let endless = format!("NDims = {}", "3".repeat(2 << 20)).into_bytes();
     let cases: Vec<(&str, Vec<u8>, Check)> = vec![
         ("empty", vec![], |e| matches!(e, ReadError::Empty)),
-        ("no magic", b"hello = world\n".to_vec(), |e| matches!(e, ReadError::WrongMagic { .. })),
+        ("no magic", b"hello world\n".to_vec(), |e| matches!(e, ReadError::WrongMagic { .. })),
         ("endless line", endless, |e| matches!(e, ReadError::HeaderTooLong { .. })),
         ("garbage", with_data("NDims = 3\n", b"\xff\xfe\x00garbage\n"), |e| {
             matches!(e, ReadError::BadLine { line: 2, .. })

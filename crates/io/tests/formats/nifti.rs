@@ -109,6 +109,15 @@ fn without_a_form_the_spacing_counts_and_the_user_is_told() {
 }
 
 #[test]
+fn a_quaternion_turns_as_the_standard_says() {
+    let mut header = Nifti { s_form_code: 0, q_form_code: 1, ..Nifti::new(DIMS) };
+    header.quaternion = [0.5_f64.sqrt(), 0.0, 0.0];
+    assert_eq!(load(NIFTI, &header.file(&bytes())).volume.grid().orientation_letters(), "RSP");
+    header.pixdim[0] = -1.0;
+    assert_eq!(load(NIFTI, &header.file(&bytes())).volume.grid().orientation_letters(), "RSA");
+}
+
+#[test]
 fn voxels_may_start_after_an_extension() {
     let header = Nifti { data_offset_bytes: Some(368.0), ..Nifti::new(DIMS) }.header();
     let loaded = load(NIFTI, &[header.as_slice(), &[9; 20], &bytes()].concat());
