@@ -6,8 +6,11 @@ use crate::volume::Histogram;
 /// Bins that [`automatic`] wants in its histogram.
 pub const AUTOMATIC_BINS: usize = 256;
 
-/// Optical depth (−ln of the transmittance) of a ray through the whole object: 95 % of the light is absorbed.
-const TARGET_DEPTH: f64 = 3.0;
+/// Optical depth (−ln of the transmittance) of a ray through the whole object: all but 0.25 % of the light is absorbed,
+/// half of it in the first eighth.
+const TARGET_DEPTH: f64 = 6.0;
+/// The same for a volume of one value, which hides nothing: 63 % of the light is absorbed.
+const CONSTANT_DEPTH: f64 = 1.0;
 /// At most this many occupied bins make a label map.
 const MOST_LABELS: usize = 16;
 /// A bin below Otsu's threshold that holds this share of the tallest one there belongs to the background.
@@ -62,20 +65,20 @@ fn thickness_voxels(share: f64, side_voxels: f64) -> f64 {
     (side_voxels * share.cbrt()).max(1.0)
 }
 
-/// The opacity of one voxel length of which `length_voxels` reach the target depth.
-fn alpha_over(length_voxels: f64) -> f64 {
-    (1.0 - (-TARGET_DEPTH / length_voxels).exp()).min(HIGHEST_ALPHA)
+/// The opacity of one voxel length of which `length_voxels` reach an optical depth.
+fn alpha_over(length_voxels: f64, depth: f64) -> f64 {
+    (1.0 - (-depth / length_voxels).exp()).min(HIGHEST_ALPHA)
 }
 
 fn constant(side_voxels: f64) -> Result<TransferFunction, TransferError> {
-    let alpha = alpha_over(side_voxels) as f32;
+    let alpha = alpha_over(side_voxels, CONSTANT_DEPTH) as f32;
     TransferFunction::new(vec![ColorPoint { at: 0.0, rgb: [0.8; 3] }], vec![OpacityPoint { at: 0.0, alpha }])
 }
 
 /// Equal opacity and a colour of its own for every value but the lowest.
 fn labels(shares: &[f64], occupied: &[usize], side_voxels: f64) -> Result<TransferFunction, TransferError> {
     let background = occupied[0];
-    let alpha = alpha_over(thickness_voxels(1.0 - shares[background], side_voxels)) as f32;
+    let alpha = alpha_over(thickness_voxels(1.0 - shares[background], side_voxels), TARGET_DEPTH) as f32;
     let centre = |bin: usize| ((bin as f64 + 0.5) / shares.len() as f64) as f32;
     let visible = &occupied[1..];
     let color = visible
