@@ -18,6 +18,7 @@ mod raw;
 mod siblings;
 mod stream;
 mod text_header;
+pub mod transfer;
 mod voxel_data;
 mod warning;
 
