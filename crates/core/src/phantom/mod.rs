@@ -1,6 +1,6 @@
 //! Analytic volumes: functions of texture coordinates, sampled at voxel centres at any size.
 //!
-//! Each phantom fills the texture cube [0,1]³; where the dimensions differ it is stretched with them. Voxels are 1 mm
+//! Each phantom fills the texture cube from 0 to 1; where the dimensions differ it is stretched with them. Voxels are 1 mm
 //! cubes and the volume is centred on the patient's origin, index axes along R, A, S.
 
 mod beetle;
@@ -67,6 +67,12 @@ pub enum PhantomError {
     /// A dimension is zero or there are too many voxels.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// There is not enough memory for the voxels.
+    #[error("not enough memory for {voxel_count} voxels")]
+    Memory {
+        /// Voxels asked for.
+        voxel_count: usize,
+    },
     /// Voxels and grid do not fit.
     #[error(transparent)]
     Volume(#[from] VolumeError),
@@ -104,20 +110,21 @@ impl Phantom {
     /// The phantom with the given number of voxels along each axis. Needs no memory but the result.
     ///
     /// # Errors
-    /// [`PhantomError::Grid`] if a dimension is zero or the voxels cannot be addressed.
+    /// [`PhantomError::Grid`] if a dimension is zero or the voxels cannot be addressed, [`PhantomError::Memory`] if
+    /// they do not fit the memory.
     pub fn volume(self, dims: [usize; 3]) -> Result<Volume, PhantomError> {
         let grid = Grid::centred(dims, [1.0; 3])?;
         let size = grid.dims_vec();
         let voxels = match self {
-            Self::SolidBox => eight_bit(dims, |p| solid_box::value(p, size)),
-            Self::Sphere => eight_bit(dims, |p| sphere::value(p, size)),
-            Self::Ramp => Voxels::F32(sample(dims, |p| ramp::value(p) as f32)),
-            Self::MarschnerLobb => Voxels::F32(sample(dims, |p| marschner_lobb::value(p) as f32)),
-            Self::SheppLogan => eight_bit(dims, |p| shepp_logan::value(p, size)),
-            Self::Present => eight_bit(dims, present::value),
-            Self::Beetle => eight_bit(dims, beetle::value),
-            Self::Snake => eight_bit(dims, snake::value),
-            Self::Orientation => eight_bit(dims, orientation::value),
+            Self::SolidBox => eight_bit(dims, |p| solid_box::value(p, size))?,
+            Self::Sphere => eight_bit(dims, |p| sphere::value(p, size))?,
+            Self::Ramp => Voxels::F32(sample(dims, |p| ramp::value(p) as f32)?),
+            Self::MarschnerLobb => Voxels::F32(sample(dims, |p| marschner_lobb::value(p) as f32)?),
+            Self::SheppLogan => eight_bit(dims, |p| shepp_logan::value(p, size))?,
+            Self::Present => eight_bit(dims, present::value)?,
+            Self::Beetle => eight_bit(dims, beetle::value)?,
+            Self::Snake => eight_bit(dims, snake::value)?,
+            Self::Orientation => eight_bit(dims, orientation::value)?,
         };
         Ok(Volume::new(grid, voxels)?)
     }
@@ -153,13 +160,19 @@ impl FromStr for Phantom {
     }
 }
 
-fn eight_bit(dims: [usize; 3], value: impl Fn(DVec3) -> f64 + Sync) -> Voxels {
-    Voxels::U8(sample(dims, |p| (value(p) * 255.0).round() as u8))
+fn eight_bit(dims: [usize; 3], value: impl Fn(DVec3) -> f64 + Sync) -> Result<Voxels, PhantomError> {
+    Ok(Voxels::U8(sample(dims, |p| (value(p) * 255.0).round() as u8)?))
 }
 
 /// A function of the texture coordinates at every voxel centre, row by row in parallel.
-fn sample<T: Send + Copy + Default>(dims: [usize; 3], at: impl Fn(DVec3) -> T + Sync) -> Vec<T> {
-    let mut voxels = vec![T::default(); dims.iter().product()];
+fn sample<T: Send + Copy + Default>(
+    dims: [usize; 3],
+    at: impl Fn(DVec3) -> T + Sync,
+) -> Result<Vec<T>, PhantomError> {
+    let voxel_count = dims.iter().product();
+    let mut voxels = Vec::new();
+    voxels.try_reserve_exact(voxel_count).map_err(|_| PhantomError::Memory { voxel_count })?;
+    voxels.resize(voxel_count, T::default());
     let centre = |index: usize, axis: usize| (index as f64 + 0.5) / dims[axis] as f64;
     voxels.par_chunks_mut(dims[0]).enumerate().for_each(|(row, voxels)| {
         let (y, z) = (centre(row % dims[1], 1), centre(row / dims[1], 2));
@@ -167,7 +180,7 @@ fn sample<T: Send + Copy + Default>(dims: [usize; 3], at: impl Fn(DVec3) -> T + 
             *voxel = at(DVec3::new(centre(i, 0), y, z));
         }
     });
-    voxels
+    Ok(voxels)
 }
 
 #[cfg(test)]

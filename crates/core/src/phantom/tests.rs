@@ -58,7 +58,7 @@ fn names_come_back() {
 }
 
 #[test]
-fn degenerate_sizes_are_sampled_and_empty_ones_refused() {
+fn degenerate_sizes_are_sampled_and_impossible_ones_refused() {
     for &phantom in Phantom::ALL {
         for dims in [[1, 1, 1], [1, 7, 3], [16, 1, 2]] {
             let volume = phantom.volume(dims).unwrap();
@@ -66,6 +66,7 @@ fn degenerate_sizes_are_sampled_and_empty_ones_refused() {
             assert!(volume.range().0 >= 0.0 && volume.range().1 <= 255.0, "{phantom}: {:?}", volume.range());
         }
         assert!(matches!(phantom.volume([4, 0, 4]), Err(PhantomError::Grid(_))), "{phantom}");
+        assert!(matches!(phantom.cube(1 << 20), Err(PhantomError::Memory { .. })), "{phantom}");
     }
 }
 

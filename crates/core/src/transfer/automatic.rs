@@ -112,7 +112,7 @@ fn continuous(shares: &[f64], side_voxels: f64) -> Result<TransferFunction, Tran
     let top = (first..bins).find(|&bin| ranks[bin] >= TOP_QUANTILE).unwrap_or(bins - 1).max(first + 1);
     let linear =
         |bin: usize| ((bin as f64 + 0.5 - first as f64) / (top as f64 + 0.5 - first as f64)).min(1.0);
-    let shape = |bin: usize| linear(bin) * ranks[bin];
+    let shape = |bin: usize| linear(bin).sqrt() * ranks[bin];
     let length = thickness_voxels(foreground, side_voxels);
     let depth = |scale: f64| -> f64 {
         let mean_extinction: f64 = (first..bins)
