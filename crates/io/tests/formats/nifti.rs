@@ -214,6 +214,15 @@ fn bad_headers_are_refused() {
 }
 
 #[test]
+fn a_gzip_bomb_is_read_up_to_the_declared_size() {
+    let bomb = gzip(&Nifti::new(DIMS).file(&vec![1; 64 << 20]));
+    assert!(bomb.len() < 1 << 19);
+    let loaded = load(NIFTI, &bomb);
+    assert_eq!(values_of(&loaded).len(), 24);
+    assert_eq!(loaded.warnings, [Warning::ExtraData]);
+}
+
+#[test]
 fn a_damaged_gzip_stream_is_refused() {
     let noise: Vec<u8> = (0..60_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
     let mut file = gzip(&Nifti::new([60, 50, 20]).file(&noise));
