@@ -1,1 +1,64 @@
-fn main(){}
+//! `wheatstone`: volume files to pictures for one eye or two, from the command line.
+//!
+//! One file per command in `commands`; what several commands share lies beside this file. `docs/cli.md` is the
+//! reference.
+
+mod backend;
+mod camera;
+mod commands;
+mod failure;
+mod look;
+mod output;
+mod picture;
+mod progress;
+mod spec;
+mod transfer_spec;
+mod volume_args;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Volume rendering for both eyes: scans and simulations to mono and stereo pictures.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Examples:\n  \
+        wheatstone demo\n  \
+        wheatstone info head.nii.gz\n  \
+        wheatstone render head.nii.gz -o head.png --tf mri-brain-t1 --shading phong\n\n\
+        Exit codes: 0 done, 1 internal or GPU failure, 2 bad input or bad usage."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Info(commands::info::InfoArgs),
+    Render(Box<commands::render::RenderArgs>),
+    Compare(commands::compare::CompareArgs),
+    Phantom(commands::phantom::PhantomArgs),
+    Doctor(commands::doctor::DoctorArgs),
+    Demo(commands::demo::DemoArgs),
+    Bench(commands::bench_cast::BenchArgs),
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Info(args) => commands::info::run(&args),
+        Command::Render(args) => commands::render::run(&args),
+        Command::Compare(args) => commands::compare::run(&args),
+        Command::Phantom(args) => commands::phantom::run(&args),
+        Command::Doctor(args) => commands::doctor::run(&args),
+        Command::Demo(args) => commands::demo::run(&args),
+        Command::Bench(args) => commands::bench_cast::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            failure.exit_code()
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! The commands, one per file: arguments, then `run`.
+
+pub(crate) mod bench_cast;
+pub(crate) mod compare;
+pub(crate) mod demo;
+pub(crate) mod doctor;
+pub(crate) mod info;
+pub(crate) mod phantom;
+pub(crate) mod render;

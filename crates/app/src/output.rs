@@ -1,0 +1,67 @@
+//! Standard output, and files that are checked before the work starts.
+
+use crate::failure::Failure;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Writes a text and a newline to standard output. A reader that has gone away is no failure.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Internal(anyhow::Error::new(error).context("cannot write to standard output")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a JSON value on one line.
+pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+    print(&value.to_string())
+}
+
+/// Refuses an output file that could not be written: wrong extension, a folder in its place, a folder that is
+/// missing or closed to writing.
+pub(crate) fn check_writable(path: &Path, extension: &str) -> Result<(), Failure> {
+    let has_extension = path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension));
+    if !has_extension {
+        return Err(Failure::input(format!("{}: the output's name must end in .{extension}", path.display())));
+    }
+    if path.is_dir() {
+        return Err(Failure::input(format!("{}: a folder is in the output's place", path.display())));
+    }
+    check_folder(folder_of(path))
+}
+
+/// Refuses a folder that no file can be made in.
+pub(crate) fn check_folder(folder: &Path) -> Result<(), Failure> {
+    let probe = tempfile::Builder::new().prefix(".wheatstone-").suffix(".part").tempfile_in(folder);
+    probe.map(drop).map_err(|error| {
+        Failure::input(format!("{}: cannot create a file here ({error})", folder.display()))
+    })
+}
+
+/// The path of frame `index` of a sequence: `OUT.png` becomes `OUT_0000.png`.
+pub(crate) fn numbered(path: &Path, index: u32) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}_{index:04}.{extension}"))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_numbered_before_the_extension() {
+        assert_eq!(numbered(Path::new("a/b.c.png"), 7), Path::new("a/b.c_0007.png"));
+        assert_eq!(numbered(Path::new("x.png"), 12345), Path::new("x_12345.png"));
+    }
+}

@@ -1,0 +1,139 @@
+//! `--tf`: a ramp, a name or a file.
+
+use crate::failure::Failure;
+use crate::spec;
+use anyhow::Context as _;
+use std::path::{Path, PathBuf};
+use wheatstone_core::transfer::{AUTOMATIC_BINS, Preset, TransferFile, TransferFunction, automatic};
+use wheatstone_core::volume::{Statistics, Volume, Window};
+
+/// A transfer function as the user asks for it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum TransferSpec {
+    /// From the histogram.
+    Automatic,
+    /// The grey ramp of DM Eq. 16.
+    Ramp([f32; 2]),
+    /// The grey ramp over value and gradient magnitude.
+    Ramp2d([f32; 4]),
+    /// A preset or colour map.
+    Preset(Preset),
+    /// A file.
+    File(PathBuf),
+}
+
+/// A transfer function and the window it is for.
+#[derive(Debug, Clone)]
+pub(crate) struct Resolved {
+    /// Colour and opacity of normalised values.
+    pub(crate) transfer: TransferFunction,
+    /// What normalises the values.
+    pub(crate) window: Window,
+}
+
+/// Parses `auto`, `ramp:V0..V1`, `ramp:V0..V1,G0..G1`, a preset's or colour map's name, or a path.
+pub(crate) fn parse(text: &str) -> Result<TransferSpec, String> {
+    if text == "auto" {
+        return Ok(TransferSpec::Automatic);
+    }
+    if let Some(bounds) = text.strip_prefix("ramp:") {
+        return ramp(bounds).ok_or_else(|| {
+            "a ramp must be ramp:V0..V1 or ramp:V0..V1,G0..G1 with 0 <= V0 <= V1 <= 1 and 0 <= G0 <= G1 <= 1"
+                .to_owned()
+        });
+    }
+    match text.parse::<Preset>() {
+        Ok(preset) => Ok(TransferSpec::Preset(preset)),
+        Err(_) if looks_like_a_path(text) => Ok(TransferSpec::File(PathBuf::from(text))),
+        Err(error) => Err(format!("{error}, auto, ramp:V0..V1 and paths of files")),
+    }
+}
+
+fn looks_like_a_path(text: &str) -> bool {
+    let path = Path::new(text);
+    path.extension().is_some() || path.components().count() > 1 || path.exists()
+}
+
+fn ramp(bounds: &str) -> Option<TransferSpec> {
+    let within = |[lo, hi]: [f64; 2]| (0.0 <= lo && lo <= hi && hi <= 1.0).then_some([lo as f32, hi as f32]);
+    match bounds.split_once(',') {
+        None => Some(TransferSpec::Ramp(within(spec::interval(bounds)?)?)),
+        Some((values, gradients)) => {
+            let ([v0, v1], [g0, g1]) =
+                (within(spec::interval(values)?)?, within(spec::interval(gradients)?)?);
+            Some(TransferSpec::Ramp2d([v0, v1, g0, g1]))
+        }
+    }
+}
+
+impl TransferSpec {
+    /// The text that [`parse`] takes.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Automatic => "auto".to_owned(),
+            Self::Ramp([v0, v1]) => format!("ramp:{v0}..{v1}"),
+            Self::Ramp2d([v0, v1, g0, g1]) => format!("ramp:{v0}..{v1},{g0}..{g1}"),
+            Self::Preset(preset) => preset.name().to_owned(),
+            Self::File(path) => path.display().to_string(),
+        }
+    }
+
+    /// The transfer function for a volume. Without a window of the user's, a file's own window counts, then a
+    /// preset's, then the robust one for an automatic function; else the range of the values.
+    pub(crate) fn resolve(&self, volume: &Volume, chosen: Option<Window>) -> Result<Resolved, Failure> {
+        let full = volume.full_window();
+        let ramp = |transfer| Resolved { transfer, window: chosen.unwrap_or(full) };
+        Ok(match self {
+            Self::Automatic => {
+                let statistics = volume.statistics();
+                let window = chosen.unwrap_or_else(|| statistics.robust_window());
+                automatic_in(volume, &statistics, window)?
+            }
+            Self::Ramp([v0, v1]) => ramp(TransferFunction::ramp(*v0, *v1).context("--tf")?),
+            Self::Ramp2d([v0, v1, g0, g1]) => {
+                ramp(TransferFunction::ramp_2d(*v0, *v1, *g0, *g1).context("--tf")?)
+            }
+            Self::Preset(preset) => {
+                let recommended = || preset.recommended_window(&volume.statistics());
+                let window = chosen.or_else(recommended).unwrap_or(full);
+                Resolved { transfer: preset.transfer(window).context("--tf")?, window }
+            }
+            Self::File(path) => {
+                let file = read_file(path)?;
+                Resolved { transfer: file.transfer, window: chosen.or(file.window).unwrap_or(full) }
+            }
+        })
+    }
+}
+
+fn automatic_in(volume: &Volume, statistics: &Statistics, window: Window) -> Result<Resolved, Failure> {
+    let histogram = statistics.histogram(window, AUTOMATIC_BINS);
+    let transfer = automatic(&histogram, volume.grid().dims()).context("automatic transfer function")?;
+    Ok(Resolved { transfer, window })
+}
+
+fn read_file(path: &Path) -> Result<TransferFile, Failure> {
+    let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| bad(&error))?;
+    TransferFile::from_json(&text).map_err(|error| bad(&error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn specs_come_back() {
+        for text in ["auto", "ramp:0.1..1", "ramp:0.1..1,0..0.25", "ct-bone", "viridis", "a/b.json", "tf.vp"] {
+            assert_eq!(parse(text).unwrap().name(), text);
+        }
+    }
+
+    #[test]
+    fn bad_specs_are_refused() {
+        for bad in ["ramp:1..0", "ramp:0..2", "ramp:0..nan", "ramp:", "ramp:0..1,0", "no-such-preset", ""] {
+            assert!(parse(bad).is_err(), "{bad}");
+        }
+        assert!(parse("ct-bones").unwrap_err().contains("ct-bone"));
+    }
+}
