@@ -3,7 +3,7 @@
 use crate::scene::{GradientMethod, Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading};
 use crate::transfer::Lut;
 use crate::volume::Window;
-use glam::{DAffine3, DVec3, Mat3, Vec3, Vec4};
+use glam::{DAffine3, DVec3, Mat3, Vec3, Vec3A, Vec4};
 
 /// Ambient, diffuse and specular weights and the specular exponent of Phong shading.
 pub const PHONG: [f32; 4] = [0.2, 0.7, 0.2, 20.0];
@@ -63,11 +63,11 @@ pub struct CastParameters {
     /// Normalised value of the isosurface.
     pub isovalue: f32,
     /// Colour of the isosurface.
-    pub surface_rgb: Vec3,
+    pub surface_rgb: Vec3A,
     /// Low corner of the visible box, texture space.
-    pub box_lo: Vec3,
+    pub box_lo: Vec3A,
     /// High corner of the visible box, texture space.
-    pub box_hi: Vec3,
+    pub box_hi: Vec3A,
     /// Visible half-space in texture space: `xyz · p + w ≥ 0`.
     pub plane: Vec4,
     /// Vectors in texture space to metric space (world axes, voxel lengths).
@@ -75,13 +75,13 @@ pub struct CastParameters {
     /// The inverse.
     pub texture_from_metric: Mat3,
     /// Unit vector towards the light of Phong shading, metric space; zero for a headlight.
-    pub to_light: Vec3,
+    pub to_light: Vec3A,
     /// Step of a shadow ray, texture space.
-    pub shadow_step: Vec3,
+    pub shadow_step: Vec3A,
     /// Value integral to grey level: one over the volume's longest side in voxel lengths.
     pub xray_scale: f32,
     /// Unit directions of directional shading, metric space; their absolute components are the light's colour.
-    pub directions: Vec<Vec3>,
+    pub directions: Vec<Vec3A>,
 }
 
 impl CastParameters {
@@ -118,16 +118,16 @@ impl CastParameters {
             termination_alpha: settings.early_termination.unwrap_or(2.0),
             isovalue,
             surface_rgb: settings.surface_rgb.unwrap_or(SURFACE_RGB).into(),
-            box_lo: settings.clip.box_lo.clamp(DVec3::ZERO, DVec3::ONE).as_vec3(),
-            box_hi: settings.clip.box_hi.clamp(DVec3::ZERO, DVec3::ONE).as_vec3(),
+            box_lo: settings.clip.box_lo.clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),
+            box_hi: settings.clip.box_hi.clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),
             plane: plane_in_texture(settings, placement),
             metric_from_texture: metric_from_texture.as_mat3(),
             texture_from_metric: texture_from_metric.as_mat3(),
             to_light: match settings.light {
-                Light::Headlight => Vec3::ZERO,
-                Light::Directional(_) => shadow_direction,
+                Light::Headlight => Vec3A::ZERO,
+                Light::Directional(_) => shadow_direction.into(),
             },
-            shadow_step: texture_from_metric.as_mat3() * (shadow_direction * SHADING_STEP),
+            shadow_step: (texture_from_metric.as_mat3() * (shadow_direction * SHADING_STEP)).into(),
             xray_scale: (1.0 / sides.into_iter().fold(0.0, f64::max)) as f32,
             directions,
         }
@@ -150,14 +150,14 @@ fn plane_in_texture(settings: &Settings, placement: &Placement) -> Vec4 {
 }
 
 /// Directions spread evenly over the sphere (Fibonacci lattice), the same for every sample: no noise, no flicker.
-fn sphere_directions(count: u32) -> Vec<Vec3> {
+fn sphere_directions(count: u32) -> Vec<Vec3A> {
     let golden_angle = std::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
     (0..count)
         .map(|i| {
             let y = 1.0 - (2.0 * i as f32 + 1.0) / count as f32;
             let (sin, cos) = (golden_angle * (i as f32 + 0.5)).sin_cos();
             let radius = (1.0 - y * y).sqrt();
-            Vec3::new(radius * cos, y, radius * sin)
+            Vec3A::new(radius * cos, y, radius * sin)
         })
         .collect()
 }

@@ -27,8 +27,10 @@ pub(crate) struct Variant {
 impl Variant {
     /// The kernel for some parameters.
     pub(crate) fn of(parameters: &CastParameters) -> Self {
+        let is_cheap = parameters.shading == Shading::None && parameters.classifier != Classifier::ValueGradient;
         let (accumulator, is_shaded) = match parameters.mode {
-            Mode::Composite => ("lib/accumulate_composite", true),
+            Mode::Composite if is_cheap => ("lib/accumulate_composite", true),
+            Mode::Composite => ("lib/accumulate_composite_search", true),
             Mode::Mip => ("lib/accumulate_mip", false),
             Mode::MinIp => ("lib/accumulate_minip", false),
             Mode::Mean => ("lib/accumulate_mean", false),
@@ -69,7 +71,9 @@ impl Variant {
         for gradient in gradients {
             for shading in shadings {
                 for classifier in classifiers {
-                    all.push(Self { accumulator: "lib/accumulate_composite", classifier, shading, gradient });
+                    for accumulator in ["lib/accumulate_composite", "lib/accumulate_composite_search"] {
+                        all.push(Self { accumulator, classifier, shading, gradient });
+                    }
                 }
                 let classifier = "lib/classify_isovalue";
                 all.push(Self { accumulator: "lib/accumulate_first_hit", classifier, shading, gradient });
@@ -276,7 +280,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 52);
+        assert_eq!(variants.len(), 82);
     }
 
     #[test]

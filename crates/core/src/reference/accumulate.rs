@@ -5,7 +5,7 @@ use super::ray::Ray;
 use super::shade::shade;
 use super::volume::Stored;
 use crate::cast::FIRST_HIT_ALPHA;
-use glam::Vec3;
+use glam::Vec3A;
 
 /// A finished ray.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +28,7 @@ impl Pixel {
 
 /// Front-to-back emission and absorption.
 pub(super) fn composite<C: Classify, T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
-    let mut color = Vec3::ZERO;
+    let mut color = Vec3A::ZERO;
     let mut transmittance = 1.0_f32;
     let mut depth_m = f32::INFINITY;
     let mut previous = context.sampler.value_at(ray.at(-0.5));

@@ -4,7 +4,7 @@ use super::gradient::gradient_at;
 use super::volume::{Sampler, Stored};
 use crate::cast::CastParameters;
 use crate::transfer::{LutEntry, OPAQUE_LOG2};
-use glam::Vec3;
+use glam::Vec3A;
 
 /// What all parts of a cast may read.
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +15,7 @@ pub(super) struct Context<'a, T> {
 
 impl<T: Stored> Context<'_, T> {
     /// Gradient in metric space.
-    pub(super) fn gradient_at(&self, position: Vec3) -> Vec3 {
+    pub(super) fn gradient_at(&self, position: Vec3A) -> Vec3A {
         gradient_at(&self.sampler, self.parameters.gradient, &self.parameters.texture_from_metric, position)
     }
 }
@@ -26,7 +26,7 @@ pub(super) struct Classified {
     /// Colour and log2 transmittance of one voxel length.
     pub(super) entry: LutEntry,
     /// The gradient, if classifying needed it.
-    pub(super) gradient: Option<Vec3>,
+    pub(super) gradient: Option<Vec3A>,
 }
 
 /// A way from samples to colour and opacity.
@@ -39,10 +39,10 @@ pub(super) trait Classify: Copy + Send + Sync {
     }
 
     /// Colour and opacity of a sample.
-    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3, value: f32, previous: f32) -> Classified;
+    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3A, value: f32, previous: f32) -> Classified;
 
     /// Log2 transmittance of one voxel length at a position, for shading rays.
-    fn log2_transmittance_at<T: Stored>(context: &Context<'_, T>, position: Vec3) -> f32 {
+    fn log2_transmittance_at<T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
         let value = context.sampler.value_at(position);
         if Self::may_be_visible(context, value, value) {
             Self::classify(context, position, value, value).entry[3]
@@ -57,7 +57,7 @@ pub(super) trait Classify: Copy + Send + Sync {
 pub(super) struct Value;
 
 impl Classify for Value {
-    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3, value: f32, _: f32) -> Classified {
+    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3A, value: f32, _: f32) -> Classified {
         Classified { entry: context.parameters.lut.at(value), gradient: None }
     }
 }
@@ -67,7 +67,7 @@ impl Classify for Value {
 pub(super) struct ValueGradient;
 
 impl Classify for ValueGradient {
-    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3, value: f32, _: f32) -> Classified {
+    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3A, value: f32, _: f32) -> Classified {
         let gradient = context.gradient_at(position);
         let entry = context.parameters.lut.at_2d(value, gradient.length().min(1.0));
         Classified { entry, gradient: Some(gradient) }
@@ -84,7 +84,7 @@ impl Classify for PreIntegrated {
         value.max(previous) >= lo && value.min(previous) <= hi
     }
 
-    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3, value: f32, previous: f32) -> Classified {
+    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3A, value: f32, previous: f32) -> Classified {
         Classified { entry: context.parameters.lut.at_2d(previous, value), gradient: None }
     }
 }
@@ -98,7 +98,7 @@ impl Classify for Isovalue {
         value >= context.parameters.isovalue
     }
 
-    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3, _: f32, _: f32) -> Classified {
+    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3A, _: f32, _: f32) -> Classified {
         let [r, g, b] = context.parameters.surface_rgb.to_array();
         Classified { entry: [r, g, b, OPAQUE_LOG2], gradient: None }
     }

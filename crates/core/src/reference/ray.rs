@@ -2,7 +2,7 @@
 
 use crate::cast::CastParameters;
 use crate::view::RayField;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3A};
 
 /// Direction components nearer to zero than this count as this far from it, so that no division overflows.
 const PARALLEL: f64 = 1e-12;
@@ -14,9 +14,9 @@ const PARALLEL: f64 = 1e-12;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ray {
     /// Texture position of sample 0.
-    pub(super) first: Vec3,
+    pub(super) first: Vec3A,
     /// From one sample to the next, texture space.
-    pub(super) step: Vec3,
+    pub(super) step: Vec3A,
     /// Length of a step, voxel lengths.
     pub(super) step_length: f32,
     /// Number of samples; 0 if the ray misses.
@@ -26,7 +26,7 @@ pub(super) struct Ray {
     /// Depth of a step, metres.
     pub(super) step_depth_m: f32,
     /// Unit vector back to the eye, metric space.
-    pub(super) to_eye: Vec3,
+    pub(super) to_eye: Vec3A,
 }
 
 impl Ray {
@@ -40,18 +40,18 @@ impl Ray {
         let step_depth = if sample_count > 0 { (far - near) / f64::from(sample_count) } else { 0.0 };
         let first_depth = near + 0.5 * step_depth;
         Self {
-            first: (origin + direction * first_depth).as_vec3(),
-            step: (direction * step_depth).as_vec3(),
+            first: (origin + direction * first_depth).as_vec3a(),
+            step: (direction * step_depth).as_vec3a(),
             step_length: (step_depth * metric_direction.length()) as f32,
             sample_count,
             first_depth_m: first_depth as f32,
             step_depth_m: step_depth as f32,
-            to_eye: -metric_direction.normalize_or_zero().as_vec3(),
+            to_eye: -metric_direction.normalize_or_zero().as_vec3a(),
         }
     }
 
     /// Texture position of a sample; fractional indices lie between samples.
-    pub(super) fn at(&self, index: f32) -> Vec3 {
+    pub(super) fn at(&self, index: f32) -> Vec3A {
         self.first + self.step * index
     }
 
@@ -88,8 +88,8 @@ fn visible_interval(
 }
 
 /// Whether a texture position is in the visible part of the volume.
-pub(super) fn is_inside(parameters: &CastParameters, position: Vec3) -> bool {
+pub(super) fn is_inside(parameters: &CastParameters, position: Vec3A) -> bool {
     position.cmpge(parameters.box_lo).all()
         && position.cmple(parameters.box_hi).all()
-        && parameters.plane.truncate().dot(position) + parameters.plane.w >= 0.0
+        && Vec3A::from_vec4(parameters.plane).dot(position) + parameters.plane.w >= 0.0
 }

@@ -5,7 +5,7 @@ use super::ray::{Ray, is_inside};
 use super::volume::Stored;
 use crate::cast::{AMBIENT_RADIUS, DIRECTIONAL_STEPS, PHONG, SHADING_STEP, SHADOW_SAMPLES};
 use crate::scene::Shading;
-use glam::Vec3;
+use glam::Vec3A;
 
 /// Squared gradient below which a sample has no surface to light.
 const FLAT_SQUARED: f32 = 1e-10;
@@ -14,11 +14,11 @@ const FLAT_SQUARED: f32 = 1e-10;
 pub(super) fn shade<C: Classify, T: Stored>(
     context: &Context<'_, T>,
     ray: &Ray,
-    position: Vec3,
+    position: Vec3A,
     classified: &Classified,
-) -> Vec3 {
+) -> Vec3A {
     let [r, g, b, _] = classified.entry;
-    let rgb = Vec3::new(r, g, b);
+    let rgb = Vec3A::new(r, g, b);
     match context.parameters.shading {
         Shading::None => rgb,
         Shading::Phong => phong(context, ray, position, rgb, classified.gradient),
@@ -32,10 +32,10 @@ pub(super) fn shade<C: Classify, T: Stored>(
 fn phong<T: Stored>(
     context: &Context<'_, T>,
     ray: &Ray,
-    position: Vec3,
-    rgb: Vec3,
-    gradient: Option<Vec3>,
-) -> Vec3 {
+    position: Vec3A,
+    rgb: Vec3A,
+    gradient: Option<Vec3A>,
+) -> Vec3A {
     let [ambient, diffuse, specular, exponent] = PHONG;
     let gradient = gradient.unwrap_or_else(|| context.gradient_at(position));
     if gradient.length_squared() < FLAT_SQUARED {
@@ -43,19 +43,19 @@ fn phong<T: Stored>(
     }
     let normal = gradient.normalize_or_zero();
     let to_light = context.parameters.to_light;
-    let to_light = if to_light == Vec3::ZERO { ray.to_eye } else { to_light };
+    let to_light = if to_light == Vec3A::ZERO { ray.to_eye } else { to_light };
     let half_way = (to_light + ray.to_eye).normalize_or_zero();
     let highlight = specular * normal.dot(half_way).abs().powf(exponent);
     rgb * (ambient + diffuse * normal.dot(to_light).abs()) + highlight
 }
 
 /// Log2 transmittance of one voxel length, 0 outside the visible part of the volume.
-fn log2_transmittance_inside<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3) -> f32 {
+fn log2_transmittance_inside<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
     if is_inside(context.parameters, position) { C::log2_transmittance_at(context, position) } else { 0.0 }
 }
 
 /// Transmittance towards the light (SP §4.1: 24 samples).
-fn shadow<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3) -> f32 {
+fn shadow<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
     let step = context.parameters.shadow_step;
     let log2: f32 = (1..=SHADOW_SAMPLES)
         .map(|i| log2_transmittance_inside::<C, T>(context, position + step * i as f32))
@@ -64,14 +64,14 @@ fn shadow<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3) -> f
 }
 
 /// Mean transmittance to 14 points around the sample (SP §4.1): the axes and the corners of a cube.
-fn ambient<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3) -> f32 {
+fn ambient<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
     let corner = 1.0 / 3.0_f32.sqrt();
-    let axes = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    let axes = [Vec3A::X, Vec3A::Y, Vec3A::Z].into_iter().flat_map(|axis| [axis, -axis]);
     let corners = (0..8).map(|i| {
         let side = |bit: u32| if i & (1 << bit) == 0 { -corner } else { corner };
-        Vec3::new(side(0), side(1), side(2))
+        Vec3A::new(side(0), side(1), side(2))
     });
-    let transmittance = |direction: Vec3| {
+    let transmittance = |direction: Vec3A| {
         let offset = context.parameters.texture_from_metric * (direction * AMBIENT_RADIUS);
         (log2_transmittance_inside::<C, T>(context, position + offset) * AMBIENT_RADIUS).exp2()
     };
@@ -79,12 +79,12 @@ fn ambient<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3) -> 
 }
 
 /// Coloured light from each direction, traced for 4 steps (SP Fig. 9), so weighted that no occlusion is white.
-fn directional<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3) -> Vec3 {
+fn directional<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> Vec3A {
     let directions = &context.parameters.directions;
     if directions.is_empty() {
-        return Vec3::ONE;
+        return Vec3A::ONE;
     }
-    let (mut lit, mut unoccluded) = (Vec3::ZERO, Vec3::ZERO);
+    let (mut lit, mut unoccluded) = (Vec3A::ZERO, Vec3A::ZERO);
     for &direction in directions {
         let step = context.parameters.texture_from_metric * (direction * SHADING_STEP);
         let log2: f32 = (1..=DIRECTIONAL_STEPS)
@@ -93,5 +93,5 @@ fn directional<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3)
         lit += direction.abs() * (log2 * SHADING_STEP).exp2();
         unoccluded += direction.abs();
     }
-    lit / unoccluded.max(Vec3::splat(1e-6))
+    lit / unoccluded.max(Vec3A::splat(1e-6))
 }

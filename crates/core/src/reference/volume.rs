@@ -1,7 +1,10 @@
 //! Trilinear sampling of the stored voxels.
 
-use glam::Vec3;
+use glam::Vec3A;
 use rayon::prelude::*;
+
+/// Above it, neighbouring f32 numbers are whole.
+const TWO_TO_23: f32 = 8_388_608.0;
 
 /// A stored voxel as the sampler reads it.
 pub(super) trait Stored: Copy + Send + Sync {
@@ -31,7 +34,7 @@ impl Stored for f32 {
 #[derive(Debug)]
 pub(super) struct PaddedVoxels<T> {
     voxels: Vec<T>,
-    dims: Vec3,
+    dims: Vec3A,
     row: usize,
     slice: usize,
 }
@@ -53,15 +56,18 @@ impl<T: Stored> PaddedVoxels<T> {
                 std::iter::once(first).chain(source.iter().copied()).chain(std::iter::once(last))
             })
             .collect();
-        Self { voxels: padded, dims: Vec3::new(width as f32, height as f32, depth as f32), row, slice }
+        Self { voxels: padded, dims: Vec3A::new(width as f32, height as f32, depth as f32), row, slice }
     }
 
     /// Trilinear interpolation at a texture position, clamped to the volume; in stored units.
     #[inline(always)]
-    fn sample(&self, position: Vec3) -> f32 {
-        let at = (position * self.dims).clamp(Vec3::ZERO, self.dims) + 0.5;
-        let (x, y, z) = (at.x as usize, at.y as usize, at.z as usize);
-        let fraction = at - Vec3::new(x as f32, y as f32, z as f32);
+    fn sample(&self, position: Vec3A) -> f32 {
+        let in_voxels = (position * self.dims).clamp(Vec3A::ZERO, self.dims);
+        // Adding 2²³ rounds to a whole number and leaves it in the low bits: the padded index of the lower
+        // neighbour, whose centre is at `index − ½`. A tie rounds to either neighbour, with a fraction of 0 or 1.
+        let rounded = in_voxels + TWO_TO_23;
+        let fraction = in_voxels + 0.5 - (rounded - TWO_TO_23);
+        let [x, y, z] = rounded.to_array().map(|r| (r.to_bits() - TWO_TO_23.to_bits()) as usize);
         let base = x + y * self.row + z * self.slice;
         let along_x = |base: usize| {
             let pair = &self.voxels[base..base + 2];
@@ -82,7 +88,7 @@ pub(super) struct Sampler<'a, T> {
     scale: f32,
     offset: f32,
     /// One voxel along each axis, texture space.
-    pub(super) texel: Vec3,
+    pub(super) texel: Vec3A,
 }
 
 impl<'a, T: Stored> Sampler<'a, T> {
@@ -92,7 +98,7 @@ impl<'a, T: Stored> Sampler<'a, T> {
 
     /// The normalised value at a texture position.
     #[inline(always)]
-    pub(super) fn value_at(&self, position: Vec3) -> f32 {
+    pub(super) fn value_at(&self, position: Vec3A) -> f32 {
         (self.voxels.sample(position) * self.scale + self.offset).clamp(0.0, 1.0)
     }
 }

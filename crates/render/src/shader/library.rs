@@ -11,6 +11,7 @@ macro_rules! files {
 files! {
     "cast",
     "lib/accumulate_composite",
+    "lib/accumulate_composite_search",
     "lib/accumulate_first_hit",
     "lib/accumulate_mean",
     "lib/accumulate_minip",
@@ -22,6 +23,7 @@ files! {
     "lib/classify_preintegrated",
     "lib/classify_value",
     "lib/classify_value_gradient",
+    "lib/composite",
     "lib/gradient_central",
     "lib/gradient_tetrahedron",
     "lib/lut",

@@ -1,0 +1,36 @@
+import package::lib::cast_parameters::{parameters};
+import package::lib::classify::{classify};
+import package::lib::ray::{Ray, ray_at, ray_depth_m};
+import package::lib::ray_state::{NOTHING_HIT, Pixel, RayState};
+import package::lib::shade::{shade};
+import package::lib::volume::{value_at};
+
+// Accumulated opacity at which a ray has hit something: the first that an 8-bit picture shows.
+const FIRST_HIT_ALPHA: f32 = 1.0 / 255.0;
+
+// `scalar` holds the value of the sample before.
+fn start_ray(ray: Ray) -> RayState {
+    return RayState(vec3f(0.0), 1.0, NOTHING_HIT, value_at(ray_at(ray, -0.5)), 0u, 0u);
+}
+
+// Puts sample i, which may be visible, behind what the ray has gathered.
+fn blend(ray: Ray, i: u32, position: vec3f, value: f32, before: RayState) -> RayState {
+    var state = before;
+    let classified = classify(position, value, state.scalar);
+    let step_transmittance = exp2(classified.entry.w * ray.step_length);
+    let rgb = shade(ray, position, classified);
+    state.color += rgb * ((1.0 - step_transmittance) * state.transmittance);
+    state.transmittance *= step_transmittance;
+    if state.depth_m == NOTHING_HIT && state.transmittance <= 1.0 - FIRST_HIT_ALPHA {
+        state.depth_m = ray_depth_m(ray, f32(i));
+    }
+    return state;
+}
+
+fn is_opaque(state: RayState) -> bool {
+    return state.transmittance <= 1.0 - parameters.termination_alpha;
+}
+
+fn finish_ray(ray: Ray, state: RayState) -> Pixel {
+    return Pixel(vec4f(state.color, 1.0 - state.transmittance), state.depth_m, state.samples);
+}
