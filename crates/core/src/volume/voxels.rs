@@ -141,19 +141,16 @@ impl Voxels {
 
     /// Replaces NaN and infinite voxels by `value` and counts them.
     pub(super) fn replace_non_finite(&mut self, value: f64) -> usize {
-        fn replace<T: Send>(
+        fn replace<T: Copy + Send + Sync>(
             voxels: &mut [T],
             value: T,
-            keep: impl Fn(&T) -> bool + Sync + Send,
-        ) -> usize
-        where
-            T: Copy + Sync,
-        {
-            voxels.par_iter_mut().filter_map(|x| (!keep(x)).then(|| *x = value)).count()
+            keep: impl Fn(T) -> bool + Sync + Send,
+        ) -> usize {
+            voxels.par_iter_mut().filter_map(|x| (!keep(*x)).then(|| *x = value)).count()
         }
         match self {
-            Self::F32(v) => replace(v, value as f32, |&x| is_usable(f64::from(x))),
-            Self::F64(v) => replace(v, value, |&x| is_usable(x)),
+            Self::F32(v) => replace(v, value as f32, |x| is_usable(f64::from(x))),
+            Self::F64(v) => replace(v, value, is_usable),
             _ => 0,
         }
     }
