@@ -6,6 +6,7 @@ use anyhow::Context as _;
 use std::path::{Path, PathBuf};
 use wheatstone_core::transfer::{AUTOMATIC_BINS, Preset, TransferFile, TransferFunction, automatic};
 use wheatstone_core::volume::{Statistics, Volume, Window};
+use wheatstone_io::transfer::read_transfer;
 
 /// A transfer function as the user asks for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,8 +115,7 @@ fn automatic_in(volume: &Volume, statistics: &Statistics, window: Window) -> Res
 
 fn read_file(path: &Path) -> Result<TransferFile, Failure> {
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|error| bad(&error))?;
-    TransferFile::from_json(&text).map_err(|error| bad(&error))
+    read_transfer(path).map_err(|error| bad(&error))
 }
 
 #[cfg(test)]
