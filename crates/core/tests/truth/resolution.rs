@@ -1,0 +1,169 @@
+//! What must not change the picture: the step, early termination, the way of integrating, the kind of projection.
+
+use crate::scene::*;
+use crate::tolerance;
+use glam::DVec3;
+use wheatstone_core::metrics::compare;
+use wheatstone_core::phantom::Phantom;
+use wheatstone_core::reference::Cast;
+use wheatstone_core::scene::{Mode, Settings, Shading};
+use wheatstone_core::transfer::TransferFunction;
+use wheatstone_core::view::View;
+use wheatstone_core::volume::{Volume, Window};
+
+fn view() -> View {
+    let size = [96, 96];
+    look(DVec3::new(0.5, 0.35, 0.7), DVec3::ZERO, DVec3::Y, perspective(0.5, size), size)
+}
+
+fn volumes() -> Vec<(Phantom, Volume, Window)> {
+    [Phantom::Sphere, Phantom::SheppLogan, Phantom::MarschnerLobb, Phantom::Present]
+        .into_iter()
+        .map(|phantom| {
+            let volume = phantom.cube(32).unwrap();
+            let window = if phantom == Phantom::MarschnerLobb { unit_window() } else { byte_window() };
+            (phantom, volume, window)
+        })
+        .collect()
+}
+
+fn transfers() -> Vec<(&'static str, TransferFunction)> {
+    vec![
+        ("ramp", TransferFunction::ramp(0.1, 1.0).unwrap()),
+        ("faint", white_transfer(&[(0.05, 0.0), (1.0, 0.05)])),
+        ("2d", TransferFunction::ramp_2d(0.05, 1.0, 0.01, 0.2).unwrap()),
+    ]
+}
+
+const SHADINGS: [Shading; 5] = [
+    Shading::None,
+    Shading::Phong,
+    Shading::Shadow,
+    Shading::Ambient,
+    Shading::Directional { directions: 4 },
+];
+
+/// Structures wider than a voxel: what is thinner, two samples per voxel do show better than one.
+fn resolved_volumes() -> Vec<(&'static str, Volume, Window)> {
+    let blobs = |p: DVec3| {
+        let ball = |x: f64, y: f64, z: f64, width: f64| {
+            (-(p - DVec3::new(x, y, z)).length_squared() / (width * width)).exp()
+        };
+        ball(10.0, 12.0, 9.0, 5.0).max(0.7 * ball(22.0, 9.0, 16.0, 7.0)).max(0.4 * ball(15.0, 22.0, 20.0, 6.0))
+    };
+    vec![
+        ("sphere", Phantom::Sphere.cube(32).unwrap(), byte_window()),
+        ("marschner-lobb", Phantom::MarschnerLobb.cube(48).unwrap(), unit_window()),
+        ("blobs", volume_of([32, 30, 24], [1.0, 0.8, 1.6], blobs), unit_window()),
+    ]
+}
+
+#[test]
+fn one_and_two_samples_per_voxel_make_the_same_picture() {
+    let mut worst = (0.0, String::new());
+    let mut failures = Vec::new();
+    for (phantom, volume, window) in resolved_volumes() {
+        let mut cases: Vec<(String, Settings)> = Vec::new();
+        for (name, transfer) in transfers() {
+            for shading in SHADINGS {
+                let settings = Settings { shading, ..Settings::new(window, transfer.clone()) };
+                cases.push((format!("{phantom} {name} {shading:?}"), settings));
+            }
+        }
+        for mode in [Mode::Mip, Mode::MinIp, Mode::Mean, Mode::XRay, Mode::Isosurface { isovalue: 0.4 }] {
+            let settings = Settings { mode, ..Settings::new(window, grey_transfer()) };
+            cases.push((format!("{phantom} {mode:?}"), settings));
+        }
+        for (case, settings) in cases {
+            let once = cast(&volume, &settings, &view());
+            let twice = cast(&volume, &Settings { sampling_factor: 2.0, ..settings }, &view());
+            let dssim = difference(&once, &twice).dssim();
+            if dssim > worst.0 {
+                worst = (dssim, case.clone());
+            }
+            if dssim > tolerance::STEP_DSSIM {
+                failures.push(format!("{case}: DSSIM {dssim:.5}"));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    assert!(worst.0 > 1e-9, "pictures that do not depend on samples at all are no test: {worst:?}");
+}
+
+#[test]
+fn early_termination_changes_nothing_beyond_its_threshold() {
+    for (phantom, volume, window) in volumes() {
+        for (name, transfer) in transfers() {
+            let settings = Settings::new(window, transfer);
+            let early = cast(&volume, &settings, &view());
+            let full = cast(&volume, &Settings { early_termination: None, ..settings }, &view());
+            let difference = largest_difference(&early, &full);
+            assert!(difference <= tolerance::EARLY_TERMINATION, "{phantom} {name}: {difference}");
+            assert!(early.samples <= full.samples, "{phantom} {name}");
+            if (phantom, name) == (Phantom::Sphere, "ramp") {
+                assert!((early.samples as f64) < 0.9 * full.samples as f64, "termination saves something");
+            }
+        }
+    }
+}
+
+fn root_mean_square(a: &Cast, b: &Cast) -> f64 {
+    10.0_f64.powf(-0.05 * compare(&over_black(a), &over_black(b)).unwrap().psnr_db)
+}
+
+#[test]
+fn preintegration_equals_post_classification_where_the_transfer_function_is_smooth() {
+    for (phantom, volume, window) in volumes() {
+        if phantom == Phantom::Present {
+            continue; // Thin shells: even a smooth function of them is a spike along the ray.
+        }
+        let transfer = white_transfer(&[(0.0, 0.0), (1.0, 0.1)]);
+        let post = Settings { sampling_factor: 2.0, ..exact_settings(window, transfer) };
+        let pre = Settings { preintegrated: true, ..post.clone() };
+        let (post, pre) = (cast(&volume, &post, &view()), cast(&volume, &pre, &view()));
+        let found = difference(&post, &pre);
+        assert!(found.dssim() < 1e-3 && found.max_abs < 0.02, "{phantom}: {found:?}");
+    }
+}
+
+#[test]
+fn preintegration_is_nearer_to_the_truth_at_half_a_sample_per_voxel() {
+    // A shell that post-classification steps over: visible for a fiftieth of the value range.
+    let spike = white_transfer(&[(0.48, 0.0), (0.5, 0.9), (0.52, 0.0)]);
+    for phantom in [Phantom::Sphere, Phantom::MarschnerLobb] {
+        let volume = phantom.cube(32).unwrap();
+        let window = if phantom == Phantom::MarschnerLobb { unit_window() } else { byte_window() };
+        let settings = |preintegrated, sampling_factor| Settings {
+            preintegrated,
+            sampling_factor,
+            ..exact_settings(window, spike.clone())
+        };
+        let truth = cast(&volume, &settings(false, 16.0), &view());
+        let pre = root_mean_square(&truth, &cast(&volume, &settings(true, 0.5), &view()));
+        let post = root_mean_square(&truth, &cast(&volume, &settings(false, 0.5), &view()));
+        assert!(pre < 0.7 * post, "{phantom}: pre-integrated {pre:.4}, post-classified {post:.4}");
+        let fine = root_mean_square(&truth, &cast(&volume, &settings(true, 8.0), &view()));
+        assert!(fine < 0.02, "{phantom}: pre-integration at 8 samples per voxel is {fine:.4} off");
+    }
+}
+
+#[test]
+fn a_perspective_from_afar_is_a_parallel_projection() {
+    const DISTANCE_M: f64 = 20_000.0;
+    const HEIGHT_M: f64 = 0.5;
+    let size = [64, 48];
+    let towards = DVec3::new(0.48, 0.36, 0.8);
+    let far = perspective(2.0 * (0.5 * HEIGHT_M / DISTANCE_M).atan(), size);
+    let from_afar = look(towards * DISTANCE_M, DVec3::ZERO, DVec3::Y, far, size);
+    let parallel = look(towards, DVec3::ZERO, DVec3::Y, orthographic(HEIGHT_M, size), size);
+    for (phantom, volume, window) in volumes() {
+        for shading in [Shading::None, Shading::Phong] {
+            let transfer = white_transfer(&[(0.1, 0.0), (1.0, 0.3)]);
+            let settings = Settings { shading, ..exact_settings(window, transfer) };
+            let found =
+                difference(&cast(&volume, &settings, &from_afar), &cast(&volume, &settings, &parallel));
+            // The rays differ by up to 0.25 m / 20 km of their length: less than a thousandth of a voxel.
+            assert!(found.dssim() < 1e-4 && found.max_abs < 0.03, "{phantom} {shading:?}: {found:?}");
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! How far a picture may be from the truth, and why not less.
+
+/// Transmittance of a homogeneous slab. The caster's own error is f32 rounding over some hundred samples; the project
+/// promises 1e-3.
+pub(crate) const TRANSMITTANCE: f64 = 1e-3;
+
+/// Depth of a surface, voxel lengths: trilinear interpolation flattens a sphere of 19 voxels radius by up to 0.02 and
+/// 8-bit voxels move it by 0.01; the project promises 0.1.
+pub(crate) const SURFACE_DEPTH_VOXELS: f64 = 0.1;
+
+/// A projected value: half an entry of the 4096-entry table, and f32 rounding of a sum of some hundred values.
+pub(crate) const PROJECTED_VALUE: f64 = 0.5 / 4095.0 + 5e-5;
+
+/// DSSIM of pictures taken with one and with two samples per voxel: the project's promise that opacity does not depend
+/// on the step.
+pub(crate) const STEP_DSSIM: f64 = 0.01;
+
+/// Channel difference that early termination may make: what is left behind the threshold of 0.99, and rounding.
+pub(crate) const EARLY_TERMINATION: f64 = 0.011;
+
+/// Channel difference of pictures that differ only in the order of f32 operations.
+pub(crate) const ROUNDING: f64 = 1e-4;
+
+/// Colour of a lit sample by the Phong formula: rounding of the gradient, raised to the power of 20.
+pub(crate) const LIT_COLOR: f64 = 1e-3;
+
+/// DSSIM of pictures of one object whose voxels are stored in another order. Only rounding differs, but it can move a
+/// sample across a voxel boundary of the sharp phantom.
+pub(crate) const STORAGE_ORDER_DSSIM: f64 = 1e-5;
+
+/// Disparity of a block match, pixels: a parabola through three sums finds the minimum to about a tenth of a pixel.
+pub(crate) const DISPARITY_PIXELS: f64 = 0.15;
