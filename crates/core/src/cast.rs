@@ -119,7 +119,8 @@ impl CastParameters {
             isovalue,
             surface_rgb: settings.surface_rgb.unwrap_or(SURFACE_RGB).into(),
             box_lo: settings.clip.box_lo.clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),
-            box_hi: settings.clip.box_hi.clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),
+            // A box whose corners are the wrong way round is empty.
+            box_hi: settings.clip.box_hi.max(settings.clip.box_lo).clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),
             plane: plane_in_texture(settings, placement),
             metric_from_texture: metric_from_texture.as_mat3(),
             texture_from_metric: texture_from_metric.as_mat3(),
@@ -135,8 +136,10 @@ impl CastParameters {
 
     /// Most samples that any ray takes: those of the volume's diagonal.
     pub fn most_samples_per_ray(&self) -> u32 {
-        let corners = [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
-        let diagonal = corners.map(|c| (self.metric_from_texture * c).length()).into_iter().fold(0.0, f32::max);
+        let corners =
+            [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
+        let diagonal =
+            corners.map(|c| (self.metric_from_texture * c).length()).into_iter().fold(0.0, f32::max);
         (diagonal * self.sampling_factor).ceil() as u32 + 1
     }
 }
