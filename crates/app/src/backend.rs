@@ -44,7 +44,7 @@ pub(crate) enum Engine {
     /// On a GPU.
     Gpu(Box<GpuEngine>),
     /// On the CPU.
-    Cpu(CpuEngine),
+    Cpu(Box<CpuEngine>),
 }
 
 /// The GPU's side of [`Engine`].
@@ -119,7 +119,7 @@ impl Engine {
     pub(crate) fn cpu(volume: &Volume, storage: StorageKind, parameters: CastParameters) -> Self {
         let start = Instant::now();
         let caster = Caster::with_storage(volume, storage);
-        Self::Cpu(CpuEngine { caster, parameters, casts: Vec::new(), upload: start.elapsed() })
+        Self::Cpu(Box::new(CpuEngine { caster, parameters, casts: Vec::new(), upload: start.elapsed() }))
     }
 
     /// Changes the settings.

@@ -107,7 +107,9 @@ impl CameraArgs {
     /// Refuses combinations that no picture can come from.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         if self.orthographic.is_some() && self.stereo != Stereo::None {
-            return Err(Failure::input("--stereo needs a perspective: it cannot be used with --orthographic"));
+            return Err(Failure::input(
+                "--stereo needs a perspective: it cannot be used with --orthographic",
+            ));
         }
         Ok(())
     }
@@ -118,7 +120,9 @@ impl CameraArgs {
             Some(height_m) => Projection::Orthographic(
                 OrthographicBox::from_height(height_m, self.size).map_err(Failure::input)?,
             ),
-            None => Projection::Perspective(Frustum::from_fov_y(self.fov, self.size).map_err(Failure::input)?),
+            None => {
+                Projection::Perspective(Frustum::from_fov_y(self.fov, self.size).map_err(Failure::input)?)
+            }
         };
         let orbit = Orbit {
             azimuth_rad: (self.azimuth + turn_deg).to_radians(),

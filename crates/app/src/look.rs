@@ -170,10 +170,16 @@ impl LookArgs {
             return Err(Failure::input(format!("--iso needs --mode iso, not --mode {}", mode.name())));
         }
         if self.shading.is_some_and(|s| s != Shading::None) && !mode.is_lit() {
-            return Err(Failure::input(format!("--shading needs --mode dvr or iso, not --mode {}", mode.name())));
+            return Err(Failure::input(format!(
+                "--shading needs --mode dvr or iso, not --mode {}",
+                mode.name()
+            )));
         }
         if self.preintegrated && mode != ModeName::Dvr {
-            return Err(Failure::input(format!("--preintegrated needs --mode dvr, not --mode {}", mode.name())));
+            return Err(Failure::input(format!(
+                "--preintegrated needs --mode dvr, not --mode {}",
+                mode.name()
+            )));
         }
         Ok(())
     }

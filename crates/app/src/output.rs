@@ -25,7 +25,10 @@ pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
 pub(crate) fn check_writable(path: &Path, extension: &str) -> Result<(), Failure> {
     let has_extension = path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension));
     if !has_extension {
-        return Err(Failure::input(format!("{}: the output's name must end in .{extension}", path.display())));
+        return Err(Failure::input(format!(
+            "{}: the output's name must end in .{extension}",
+            path.display()
+        )));
     }
     if path.is_dir() {
         return Err(Failure::input(format!("{}: a folder is in the output's place", path.display())));
@@ -36,9 +39,9 @@ pub(crate) fn check_writable(path: &Path, extension: &str) -> Result<(), Failure
 /// Refuses a folder that no file can be made in.
 pub(crate) fn check_folder(folder: &Path) -> Result<(), Failure> {
     let probe = tempfile::Builder::new().prefix(".wheatstone-").suffix(".part").tempfile_in(folder);
-    probe.map(drop).map_err(|error| {
-        Failure::input(format!("{}: cannot create a file here ({error})", folder.display()))
-    })
+    probe
+        .map(drop)
+        .map_err(|error| Failure::input(format!("{}: cannot create a file here ({error})", folder.display())))
 }
 
 /// The path of frame `index` of a sequence: `OUT.png` becomes `OUT_0000.png`.

@@ -23,18 +23,17 @@ pub(crate) enum Bits {
 pub(crate) fn write_png(path: &Path, picture: &RgbImage, bits: Bits) -> Result<(), Failure> {
     let (bytes, color_type) = match bits {
         Bits::Eight => (picture.to_rgb8(), ExtendedColorType::Rgb8),
-        Bits::Sixteen => (
-            picture.to_rgb16().into_iter().flat_map(u16::to_ne_bytes).collect(),
-            ExtendedColorType::Rgb16,
-        ),
+        Bits::Sixteen => {
+            (picture.to_rgb16().into_iter().flat_map(u16::to_ne_bytes).collect(), ExtendedColorType::Rgb16)
+        }
     };
     write_atomically(path, |writer| {
-        PngEncoder::new(writer)
-            .write_image(&bytes, picture.width, picture.height, color_type)
-            .map_err(|error| match error {
+        PngEncoder::new(writer).write_image(&bytes, picture.width, picture.height, color_type).map_err(
+            |error| match error {
                 ImageError::IoError(error) => error,
                 other => io::Error::other(other),
-            })
+            },
+        )
     })?;
     Ok(())
 }

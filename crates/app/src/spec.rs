@@ -10,6 +10,9 @@ pub(crate) const MOST_PICTURE_SIDE: u32 = 16_384;
 /// Most pixels of a picture.
 pub(crate) const MOST_PIXELS: u64 = 1 << 26;
 
+/// Widest field of view, radians.
+const MOST_FOV_RAD: f64 = 3.1;
+
 /// A parser of finite numbers in a closed range.
 pub(crate) fn within(
     range: RangeInclusive<f64>,
@@ -24,8 +27,8 @@ pub(crate) fn within(
 /// A field of view in radians, inside (0, π).
 pub(crate) fn fov(text: &str) -> Result<f64, String> {
     finite(text)
-        .filter(|&x| (0.001..=3.14).contains(&x))
-        .ok_or_else(|| "must be a number of radians from 0.001 to 3.14 (below pi)".to_owned())
+        .filter(|&x| (0.001..=MOST_FOV_RAD).contains(&x))
+        .ok_or_else(|| format!("must be a number of radians from 0.001 to {MOST_FOV_RAD} (below pi)"))
 }
 
 /// Metres from 0.01 up, or `inf`.
@@ -102,7 +105,9 @@ pub(crate) fn shading(text: &str) -> Result<Shading, String> {
             .filter(|&directions| directions <= MAX_DIRECTIONS)
             .map(|directions| Shading::Directional { directions })
             .ok_or_else(|| {
-                format!("must be none, phong, shadow, ambient or directional:D with D from 0 to {MAX_DIRECTIONS}")
+                format!(
+                    "must be none, phong, shadow, ambient or directional:D with D from 0 to {MAX_DIRECTIONS}"
+                )
             }),
     }
 }

@@ -124,7 +124,8 @@ mod tests {
 
     #[test]
     fn specs_come_back() {
-        for text in ["auto", "ramp:0.1..1", "ramp:0.1..1,0..0.25", "ct-bone", "viridis", "a/b.json", "tf.vp"] {
+        for text in ["auto", "ramp:0.1..1", "ramp:0.1..1,0..0.25", "ct-bone", "viridis", "a/b.json", "tf.vp"]
+        {
             assert_eq!(parse(text).unwrap().name(), text);
         }
     }

@@ -11,7 +11,8 @@ use wheatstone_io::{Loaded, RawLayout, read_raw, read_volume};
 /// Which file, and what a raw file does not say itself.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct VolumeArgs {
-    /// Volume file: .nii, .nii.gz, .hdr/.img, .nrrd, .nhdr, .mha, .mhd, or raw with NAME_XxYxZ_TYPE.raw as its name.
+    /// Volume file: .nii, .nii.gz, .hdr/.img, .nrrd, .nhdr, .mha, .mhd, or raw with size and type in its name or given by
+    /// flags.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
 

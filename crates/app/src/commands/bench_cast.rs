@@ -149,10 +149,7 @@ impl CastArgs {
         let placement = Placement::new(volume, world_from_patient(volume.grid(), self.up.direction()));
         let mut engines = self.engines(volume, &CastParameters::new(&base, &placement), &name, measured)?;
         let looks = self.looks();
-        let bar = Bar::new(
-            "frames",
-            looks.len() as u64 * u64::from(self.frames) * engines.len() as u64,
-        );
+        let bar = Bar::new("frames", looks.len() as u64 * u64::from(self.frames) * engines.len() as u64);
         for (mode, shading) in looks {
             let settings = Settings { mode: mode.with_isovalue(isovalue), shading, ..base.clone() };
             let parameters = CastParameters::new(&settings, &placement);
@@ -321,7 +318,8 @@ impl Measured {
         for row in &self.rows {
             let is_same = |r: &&Row| (&r.volume, r.mode, &r.shading) == (&row.volume, row.mode, &row.shading);
             let cpu = self.rows.iter().filter(is_same).find(|r| r.backend == "cpu");
-            let ratio = cpu.map_or_else(|| "-".to_owned(), |cpu| format!("{:.2}", cpu.frame_ms / row.frame_ms));
+            let ratio =
+                cpu.map_or_else(|| "-".to_owned(), |cpu| format!("{:.2}", cpu.frame_ms / row.frame_ms));
             lines.push(format!(
                 "{:<16} {:<6} {:<14} {:<4} {:>10.1} {:>12.1} {:>8}",
                 row.volume, row.mode, row.shading, row.backend, row.frame_ms, row.msamples_per_s, ratio

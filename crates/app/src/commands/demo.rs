@@ -35,32 +35,32 @@ const SHOTS: [Shot; 6] = [
     Shot {
         file: "mono.png",
         title: "Composite with Phong shading",
-        flags: "--tf mri-brain-t1 --shading phong --azimuth 30 --elevation 12 --distance 1.45 --fov 0.7 --background 101418",
+        flags: "--tf mri-brain-t1 --shading phong --azimuth 30 --elevation 12 --distance 1.25 --fov 0.7 --background 101418",
     },
     Shot {
         file: "stereo.png",
         title: "Stereo pair, left eye on the left",
-        flags: "--stereo side-by-side --convergence 1.45 --tf mri-brain-t1 --shading phong --azimuth 30 --elevation 12 --distance 1.45 --fov 0.7 --background 101418",
+        flags: "--stereo side-by-side --convergence 1.25 --tf mri-brain-t1 --shading phong --azimuth 30 --elevation 12 --distance 1.25 --fov 0.7 --background 101418",
     },
     Shot {
         file: "anaglyph.png",
         title: "Anaglyph for red-cyan glasses",
-        flags: "--stereo anaglyph --convergence 1.45 --tf mri-brain-t1 --shading phong --azimuth 30 --elevation 12 --distance 1.45 --fov 0.7 --background 101418",
+        flags: "--stereo anaglyph --convergence 1.25 --tf mri-brain-t1 --shading phong --azimuth 30 --elevation 12 --distance 1.25 --fov 0.7 --background 101418",
     },
     Shot {
         file: "mip.png",
         title: "Maximum intensity projection of a slab of 20 mm beside the midline",
-        flags: "--mode mip --tf magma --window 120..255 --clip-box 0.4..0.5,0..1,0..1 --azimuth 60 --elevation 10 --distance 1.45 --fov 0.7",
+        flags: "--mode mip --tf magma --window 120..255 --clip-box 0.4..0.5,0..1,0..1 --azimuth 60 --elevation 10 --distance 1.25 --fov 0.7",
     },
     Shot {
         file: "isosurface.png",
-        title: "Isosurface between grey and white matter",
-        flags: "--iso 0.62 --azimuth 30 --elevation 12 --distance 1.45 --fov 0.7 --background 101418",
+        title: "Isosurface of the white matter",
+        flags: "--iso 0.7 --azimuth 30 --elevation 12 --distance 1.25 --fov 0.7 --background 101418",
     },
     Shot {
         file: "cut.png",
         title: "Cut by a plane, with ambient occlusion",
-        flags: "--tf mri-brain-t1 --shading ambient --clip-plane=-0.6,0.3,-0.7,0.05 --azimuth 30 --elevation 12 --distance 1.3 --fov 0.7 --background 101418",
+        flags: "--tf mri-brain-t1 --shading ambient --clip-plane=-0.6,0.3,-0.7,0.05 --azimuth 30 --elevation 12 --distance 1.15 --fov 0.7 --background 101418",
     },
 ];
 
@@ -68,7 +68,9 @@ const SHOTS: [Shot; 6] = [
 ///
 /// Writes PNG pictures and index.html, a contact sheet with the command and time of each.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  wheatstone demo\n  wheatstone demo -o pictures --size 1024x1024 --backend gpu")]
+#[command(
+    after_help = "Examples:\n  wheatstone demo\n  wheatstone demo -o pictures --size 1024x1024 --backend gpu"
+)]
 pub(crate) struct DemoArgs {
     /// Folder for the pictures; made if it is missing.
     #[arg(short, long, value_name = "DIR", default_value = "demo")]
@@ -114,8 +116,9 @@ struct Taken {
 /// Runs the command.
 pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let folder = &args.output;
-    std::fs::create_dir_all(folder)
-        .map_err(|error| Failure::input(format!("{}: cannot make this folder ({error})", folder.display())))?;
+    std::fs::create_dir_all(folder).map_err(|error| {
+        Failure::input(format!("{}: cannot make this folder ({error})", folder.display()))
+    })?;
     check_folder(folder)?;
     let loaded = read_bytes(Format::Nifti, BRAIN, None).context("the shipped volume")?;
     let volume = &loaded.volume;
@@ -194,12 +197,12 @@ fn contact_sheet(plans: &[Plan], taken: &[Taken], engine: &Engine) -> String {
         let [width, height] = *size;
         let class = if width > height { " class=\"wide\"" } else { "" };
         // Writing to a string cannot fail.
-        let _ = write!(
+        let _ = writeln!(
             figures,
             "<figure{class}><a href=\"{file}\"><img src=\"{file}\" width=\"{width}\" height=\"{height}\" \
              alt=\"{title}\"></a><figcaption><h2>{title}</h2><p>{width}×{height} · {mode} · shading {shading} · \
              {frame_ms:.0} ms · {msamples:.1} M samples</p><code>wheatstone render {BRAIN_PATH} -o {file} \
-             --size {eye_width}x{eye_height} {flags}</code></figcaption></figure>\n",
+             --size {eye_width}x{eye_height} {flags}</code></figcaption></figure>",
             file = shot.file,
             title = shot.title,
             mode = look.mode.name(),

@@ -30,7 +30,11 @@ pub(crate) struct InfoArgs {
 pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let loaded = args.volume.load()?;
     let statistics = loaded.volume.statistics();
-    if args.json { print_json(&as_json(args, &loaded, &statistics)) } else { print(&as_text(&loaded, &statistics)) }
+    if args.json {
+        print_json(&as_json(args, &loaded, &statistics))
+    } else {
+        print(&as_text(&loaded, &statistics))
+    }
 }
 
 fn as_json(args: &InfoArgs, loaded: &Loaded, statistics: &Statistics) -> Value {

@@ -39,6 +39,11 @@ pub(crate) fn run(args: &PhantomArgs) -> Result<(), Failure> {
     let _spinner = Bar::spinner(format!("writing {}", args.output.display()));
     write_nrrd(&args.output, &volume)?;
     let [x, y, z] = args.size;
-    eprintln!("{} of {x}×{y}×{z} {} voxels → {}", args.phantom, volume.voxels().voxel_type(), args.output.display());
+    eprintln!(
+        "{} of {x}×{y}×{z} {} voxels → {}",
+        args.phantom,
+        volume.voxels().voxel_type(),
+        args.output.display()
+    );
     Ok(())
 }

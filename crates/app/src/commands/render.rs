@@ -60,7 +60,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), conflicts_with = "turntable", allow_negative_numbers = true)]
     frames: Option<u32>,
 
-    /// Write N pictures OUT_0000.png and so on, turning by 360/N degrees from one to the next.
+    /// Write N pictures, numbered from 0000 before the extension, turning by 360/N degrees from one to the next.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
     turntable: Option<u32>,
 
@@ -132,8 +132,7 @@ impl RenderArgs {
     fn make(&self, engine: &mut Engine) -> Result<Made, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let bar = Bar::new("frames", u64::from(frames));
-        let mut made =
-            Made { frames_ms: Vec::new(), samples: 0, picture_size: [0; 2], outputs: Vec::new() };
+        let mut made = Made { frames_ms: Vec::new(), samples: 0, picture_size: [0; 2], outputs: Vec::new() };
         if self.warms_up() {
             engine.cast(&self.camera.views(0.0)?)?;
         }

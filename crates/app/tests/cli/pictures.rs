@@ -1,0 +1,115 @@
+//! Pictures: what `render` writes, and what `compare` finds in it.
+
+use crate::support::Bench;
+use image::ColorType;
+
+#[test]
+fn a_picture_is_written_and_is_like_itself() {
+    let bench = Bench::new();
+    bench.render("a.png", &["--tf", "ramp:0..1"]);
+    bench.render("b.png", &["--tf", "ramp:0..1", "--bits", "16"]);
+    bench.render("c.png", &["--tf", "viridis"]);
+    assert_eq!(bench.png("a.png"), (32, 24, ColorType::Rgb8));
+    assert_eq!(bench.png("b.png"), (32, 24, ColorType::Rgb16));
+    let same = bench.run(&["compare", "a.png", "a.png", "--json"]).json();
+    assert_eq!(same["ssim"], 1.0);
+    assert!(same["psnr"].is_null());
+    let depths = bench.run(&["compare", "a.png", "b.png", "--json"]).json();
+    assert!(depths["max_abs"].as_f64().unwrap() <= 0.5 / 255.0 + 1e-4, "{depths}");
+    let other = bench.run(&["compare", "a.png", "c.png", "--json"]).json();
+    assert!(other["dssim"].as_f64().unwrap() > 0.001 && other["psnr"].as_f64().unwrap() < 60.0, "{other}");
+    let text = bench.run(&["compare", "a.png", "c.png"]);
+    assert!(text.stdout.contains("dssim"), "{}", text.stdout);
+}
+
+#[test]
+fn every_mode_and_shading_makes_a_picture_that_is_not_empty() {
+    let bench = Bench::new();
+    bench.run(&["phantom", "box", "--size", "8", "-o", "box.nrrd"]);
+    let looks: &[&[&str]] = &[
+        &[],
+        &["--shading", "phong"],
+        &["--shading", "shadow"],
+        &["--shading", "ambient"],
+        &["--shading", "directional:2"],
+        &["--preintegrated", "--tf", "ramp:0..1"],
+        &["--tf", "ramp:0..1,0..0.1"],
+        &["--tf", "ct-bone"],
+        &["--mode", "mip"],
+        &["--mode", "mean"],
+        &["--mode", "xray"],
+        &["--mode", "iso"],
+        &["--iso", "0.5", "--gradient", "tetrahedron", "--tf", "inferno"],
+        &["--orthographic", "1.2", "--iso", "0.5"],
+        &["--iso", "0.5", "--up", "a", "--azimuth", "-40", "--elevation", "-20"],
+        &["--storage", "32", "--window", "auto", "--ert", "0", "--sampling-factor", "2"],
+    ];
+    for flags in looks {
+        bench.render("look.png", flags);
+        let picture = image::open(bench.path("look.png")).unwrap().into_rgb8();
+        assert!(picture.pixels().any(|p| p.0.iter().any(|&c| c > 40)), "{flags:?} is black");
+    }
+}
+
+#[test]
+fn clipping_and_background_show() {
+    let bench = Bench::new();
+    let at = |name: &str, x, y| image::open(bench.path(name)).unwrap().into_rgb8().get_pixel(x, y).0;
+    bench.render("all.png", &["--iso", "0.5", "--background", "0000ff"]);
+    bench.render("box.png", &["--iso", "0.5", "--clip-box", "0..0.4,0..1,0..1"]);
+    bench.render("plane.png", &["--iso", "0.5", "--clip-plane", "-1,0,0,0.1"]);
+    assert_eq!(at("all.png", 0, 0), [0, 0, 255]);
+    assert_ne!(at("all.png", 18, 12), [0, 0, 255]);
+    // From the front the patient's right hand is on the left, where texture x is large.
+    assert_eq!(at("box.png", 12, 12), [0, 0, 0]);
+    assert_ne!(at("box.png", 20, 12), [0, 0, 0]);
+    assert_ne!(at("plane.png", 12, 12), [0, 0, 0]);
+    assert_eq!(at("plane.png", 20, 12), [0, 0, 0]);
+}
+
+#[test]
+fn stereo_layouts_have_their_sizes_and_sides() {
+    let bench = Bench::new();
+    let stereo = |name: &str, layout: &str, convergence: &str| {
+        bench.render(name, &["--iso", "0.5", "--stereo", layout, "--convergence", convergence]);
+        image::open(bench.path(name)).unwrap().into_rgb8()
+    };
+    let side = stereo("side.png", "side-by-side", "inf");
+    let top = stereo("top.png", "top-bottom", "inf");
+    let anaglyph = stereo("anaglyph.png", "anaglyph", "1.7");
+    let (left, right) = (stereo("left.png", "left", "inf"), stereo("right.png", "right", "inf"));
+    assert_eq!(side.dimensions(), (64, 24));
+    assert_eq!(top.dimensions(), (32, 48));
+    assert_eq!(anaglyph.dimensions(), (32, 24));
+    assert_eq!(left.dimensions(), (32, 24));
+    for (x, y, pixel) in left.enumerate_pixels() {
+        assert_eq!(pixel, side.get_pixel(x, y));
+        assert_eq!(pixel, top.get_pixel(x, y));
+        assert_eq!(right.get_pixel(x, y), side.get_pixel(x + 32, y));
+        assert_eq!(right.get_pixel(x, y), top.get_pixel(x, y + 24));
+    }
+    // With parallel eyes everything lies further left for the right eye.
+    let centre = |picture: &image::RgbImage| {
+        let lit: Vec<f64> = picture
+            .enumerate_pixels()
+            .filter(|(_, _, p)| p.0 != [0, 0, 0])
+            .map(|(x, _, _)| f64::from(x))
+            .collect();
+        lit.iter().sum::<f64>() / lit.len() as f64
+    };
+    assert!(centre(&left) > centre(&right) + 0.5, "{} {}", centre(&left), centre(&right));
+}
+
+#[test]
+fn a_turntable_is_a_numbered_sequence() {
+    let bench = Bench::new();
+    let run = bench.render("t.png", &["--turntable", "4", "--iso", "0.5", "--distance", "1.5", "--json"]);
+    assert_eq!(bench.files(), ["sphere.nrrd", "t_0000.png", "t_0001.png", "t_0002.png", "t_0003.png"]);
+    let json = run.json();
+    assert_eq!(json["frames_ms"].as_array().unwrap().len(), 4);
+    assert_eq!(json["outputs"].as_array().unwrap().len(), 4);
+    let quarter = bench.render("q.png", &["--azimuth", "90", "--iso", "0.5", "--distance", "1.5"]);
+    assert!(quarter.stderr.contains("cpu"), "{}", quarter.stderr);
+    let same = bench.run(&["compare", "q.png", "t_0001.png", "--json"]).json();
+    assert_eq!(same["max_abs"], 0.0);
+}

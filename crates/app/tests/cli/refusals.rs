@@ -1,0 +1,132 @@
+//! Bad input and bad usage: exit code 2, a line that says why, nothing written.
+
+use crate::support::Bench;
+
+/// Runs `render` with flags and checks that it is refused with a message, and that nothing was written.
+fn refuses(bench: &Bench, flags: &[&str], says: &str) {
+    let before = bench.files();
+    let run = bench.try_render("x.png", flags);
+    assert_eq!(run.code, 2, "{flags:?}: {}", run.stderr);
+    assert!(run.stderr.starts_with("error: "), "{flags:?}: {}", run.stderr);
+    assert!(run.stderr.contains(says), "{flags:?} does not say {says:?}: {}", run.stderr);
+    assert!(run.stdout.is_empty(), "{flags:?}");
+    assert_eq!(bench.files(), before, "{flags:?}");
+}
+
+#[test]
+fn impossible_values_name_their_flag_and_range() {
+    let bench = Bench::new();
+    let cases: &[(&[&str], &str)] = &[
+        (&["--size", "0x10"], "--size"),
+        (&["--size", "100000x100000"], "16384"),
+        (&["--size", "10"], "WIDTHxHEIGHT"),
+        (&["--distance", "-1"], "from 0 to 1000"),
+        (&["--distance", "nan"], "--distance"),
+        (&["--fov", "3.2"], "below pi"),
+        (&["--fov", "0"], "--fov"),
+        (&["--elevation", "91"], "from -90 to 90"),
+        (&["--azimuth", "inf"], "--azimuth"),
+        (&["--sampling-factor", "0"], "from 0.01 to 32"),
+        (&["--sampling-factor", "-1"], "--sampling-factor"),
+        (&["--sampling-factor", "1000"], "--sampling-factor"),
+        (&["--ert", "1.5"], "from 0 to 1"),
+        (&["--eye-distance", "-0.1"], "from 0 to 1"),
+        (&["--eye-distance", "50"], "--eye-distance"),
+        (&["--convergence", "0"], "inf or"),
+        (&["--shading", "directional:65"], "from 0 to 64"),
+        (&["--shading", "gouraud"], "phong"),
+        (&["--window", "5..5"], "LO below HI"),
+        (&["--window", "9..-5"], "--window"),
+        (&["--window", "nan..1"], "--window"),
+        (&["--iso", "1.5"], "from 0 to 1"),
+        (&["--iso", "-0.5"], "--iso"),
+        (&["--frames", "0"], "1..=10000"),
+        (&["--turntable", "0"], "--turntable"),
+        (&["--background", "red"], "RRGGBB"),
+        (&["--tf", "no-such-preset"], "ct-bone"),
+        (&["--tf", "ramp:1..0"], "V0 <= V1"),
+        (&["--tf", "missing.json"], "missing.json"),
+        (&["--clip-box", "0..1,0..0,0..1"], "--clip-box"),
+        (&["--clip-plane", "0,0,0,1"], "normal"),
+        (&["--orthographic", "0"], "--orthographic"),
+        (&["--up", "Q"], "--up"),
+        (&["--backend", "abacus"], "--backend"),
+        (&["--bits", "12"], "--bits"),
+        (&["--no-such-flag"], "--no-such-flag"),
+    ];
+    for (flags, says) in cases {
+        refuses(&bench, flags, says);
+    }
+}
+
+#[test]
+fn contradictions_are_refused() {
+    let bench = Bench::new();
+    refuses(&bench, &["--mode", "mip", "--iso", "0.5"], "--iso needs --mode iso");
+    refuses(&bench, &["--mode", "mip", "--shading", "phong"], "--shading needs");
+    refuses(&bench, &["--mode", "mip", "--preintegrated"], "--preintegrated needs");
+    refuses(&bench, &["--preintegrated", "--tf", "ramp:0..1,0..1"], "one dimension");
+    refuses(&bench, &["--orthographic", "1", "--stereo", "anaglyph"], "--stereo needs a perspective");
+    refuses(&bench, &["--orthographic", "1", "--fov", "1"], "--fov");
+    refuses(&bench, &["--turntable", "2", "--frames", "2"], "--frames");
+    refuses(&bench, &["--raw-size", "4x4x4"], "--raw-type");
+}
+
+#[test]
+fn bad_files_are_refused() {
+    let bench = Bench::new();
+    std::fs::write(bench.path("empty.nrrd"), []).unwrap();
+    std::fs::write(bench.path("noise.nii"), b"not a volume at all").unwrap();
+    let whole = std::fs::read(bench.path("sphere.nrrd")).unwrap();
+    std::fs::write(bench.path("short.nrrd"), &whole[..whole.len() / 2]).unwrap();
+    std::fs::write(bench.path("huge_1048576x1048576x1_uint8.raw"), [0; 8]).unwrap();
+    std::fs::write(bench.path("tf.json"), "{}").unwrap();
+    let before = bench.files();
+    for file in
+        ["empty.nrrd", "noise.nii", "short.nrrd", "huge_1048576x1048576x1_uint8.raw", "missing.nrrd", "."]
+    {
+        for args in [&["info", file][..], &["render", file, "-o", "x.png"], &["bench", "cast", file]] {
+            let run = bench.run(args);
+            assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);
+            let errors: Vec<&str> = run.stderr.lines().filter(|line| line.starts_with("error: ")).collect();
+            assert!(errors.len() == 1 && errors[0].contains(file), "{args:?}: {}", run.stderr);
+        }
+    }
+    refuses(&bench, &["--tf", "tf.json"], "tf.json");
+    assert_eq!(bench.run(&["compare", "noise.nii", "noise.nii"]).code, 2);
+    assert_eq!(bench.files(), before);
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_refused_before_the_work() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("folder.png")).unwrap();
+    std::fs::write(bench.path("file"), []).unwrap();
+    let before = bench.files();
+    for (output, says) in [("no/such/x.png", "no/such"), ("x.jpg", ".png"), ("folder.png", "folder.png")] {
+        let run = bench.try_render(output, &[]);
+        assert_eq!(run.code, 2, "{output}: {}", run.stderr);
+        assert!(run.stderr.contains(says), "{output}: {}", run.stderr);
+    }
+    for args in [
+        &["phantom", "sphere", "--size", "8", "-o", "x.raw"][..],
+        &["phantom", "sphere", "--size", "8", "-o", "no/x.nrrd"],
+        &["phantom", "sphere", "--size", "0", "-o", "x.nrrd"],
+        &["phantom", "cube", "-o", "x.nrrd"],
+        &["demo", "-o", "file"],
+    ] {
+        let run = bench.run(args);
+        assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);
+    }
+    assert_eq!(bench.files(), before);
+}
+
+#[test]
+fn pictures_of_different_sizes_are_not_compared() {
+    let bench = Bench::new();
+    bench.render("a.png", &[]);
+    bench.render("b.png", &["--size", "8x8"]);
+    let run = bench.run(&["compare", "a.png", "b.png"]);
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("32×24") && run.stderr.contains("8×8"), "{}", run.stderr);
+}

@@ -1,0 +1,208 @@
+//! What commands say: JSON shapes, texts, help.
+
+use crate::support::{Bench, repository_file};
+use serde_json::Value;
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+#[test]
+fn render_reports_one_object() {
+    let bench = Bench::new();
+    let json = bench.render("a.png", &["--json", "--frames", "3", "--stereo", "side-by-side"]).json();
+    let expected = [
+        "backend",
+        "device",
+        "dims",
+        "driver",
+        "frame_ms",
+        "frames_ms",
+        "mode",
+        "outputs",
+        "picture_size",
+        "rays",
+        "samples",
+        "shading",
+        "size",
+        "tf",
+        "upload_ms",
+        "warnings",
+        "window",
+    ];
+    assert_eq!(keys(&json), expected);
+    assert_eq!(
+        (&json["backend"], &json["mode"], &json["shading"]),
+        (&"cpu".into(), &"dvr".into(), &"none".into())
+    );
+    assert_eq!(json["dims"], serde_json::json!([24, 24, 24]));
+    assert_eq!(json["size"], serde_json::json!([32, 24]));
+    assert_eq!(json["picture_size"], serde_json::json!([64, 24]));
+    assert_eq!(json["rays"], 2 * 32 * 24);
+    assert_eq!(json["frames_ms"].as_array().unwrap().len(), 3);
+    assert!(json["samples"].as_u64().unwrap() > 0);
+    assert_eq!(json["outputs"], serde_json::json!(["a.png"]));
+}
+
+#[test]
+fn windows_follow_their_rules() {
+    let bench = Bench::new();
+    let window =
+        |flags: &[&str]| bench.render("w.png", &[flags, &["--json"]].concat()).json()["window"].clone();
+    assert_eq!(window(&["--tf", "ramp:0.2..1"]), serde_json::json!([0.0, 255.0]));
+    assert_eq!(window(&["--iso", "0.5"]), serde_json::json!([0.0, 255.0]));
+    assert_eq!(window(&["--tf", "ct-lung"]), serde_json::json!([-1000.0, 1500.0]));
+    assert_eq!(window(&["--tf", "ct-lung", "--window", "full"]), serde_json::json!([0.0, 255.0]));
+    assert_eq!(window(&["--mode", "mip", "--window", "-5..7.5"]), serde_json::json!([-5.0, 7.5]));
+    std::fs::write(
+        bench.path("tf.json"),
+        r#"{"wheatstone_transfer_function": 1, "color": "hot", "opacity": [[0, 0], [1, 1]], "window": [10, 90]}"#,
+    )
+    .unwrap();
+    assert_eq!(window(&["--tf", "tf.json"]), serde_json::json!([10.0, 90.0]));
+}
+
+#[test]
+fn info_tells_what_the_file_holds() {
+    let bench = Bench::new();
+    let json = bench.run(&["info", "sphere.nrrd", "--json"]).json();
+    let expected = [
+        "dims",
+        "file",
+        "format",
+        "mean",
+        "non_finite_voxels",
+        "orientation",
+        "percentiles",
+        "range",
+        "robust_window",
+        "size_mm",
+        "spacing_mm",
+        "type",
+        "warnings",
+    ];
+    assert_eq!(keys(&json), expected);
+    assert_eq!(json["type"], "uint8");
+    assert_eq!(json["orientation"], "RAS");
+    assert_eq!(json["range"], serde_json::json!([0.0, 255.0]));
+    assert!(json["percentiles"]["50"].is_number());
+    let text = bench.run(&["info", "sphere.nrrd"]).stdout;
+    assert!(text.contains("24 × 24 × 24") && text.contains("RAS"), "{text}");
+}
+
+#[test]
+fn raw_files_take_their_layout_from_flags_or_name() {
+    let bench = Bench::new();
+    let values: Vec<u8> = (0..60_u16).flat_map(u16::to_be_bytes).collect();
+    std::fs::write(bench.path("scan.bin"), [&[9; 4][..], &values].concat()).unwrap();
+    let layout = ["--raw-size", "3x4x5", "--raw-type", "uint16", "--raw-header", "4", "--raw-big-endian"];
+    let spacing = ["--raw-spacing", "1,2,3", "--json"];
+    let json = bench.run(&[&["info", "scan.bin"][..], &layout, &spacing].concat()).json();
+    assert_eq!(json["range"], serde_json::json!([0.0, 59.0]));
+    assert_eq!(json["spacing_mm"], serde_json::json!([1.0, 2.0, 3.0]));
+    std::fs::write(bench.path("n_2x3x4_uint8.raw"), [7; 24]).unwrap();
+    assert_eq!(bench.run(&["info", "n_2x3x4_uint8.raw", "--json"]).json()["format"], "raw");
+}
+
+#[test]
+fn warnings_go_to_standard_error() {
+    let bench = Bench::new();
+    let values: Vec<u8> = [1.0_f32, f32::NAN, 3.0, 4.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+    std::fs::write(bench.path("n_4x1x1_float32.raw"), values).unwrap();
+    let run = bench.run(&["info", "n_4x1x1_float32.raw", "--json"]);
+    assert!(run.stderr.starts_with("warning: n_4x1x1_float32.raw: "), "{}", run.stderr);
+    let json = run.json();
+    assert_eq!(json["warnings"].as_array().unwrap().len(), 1);
+    assert_eq!(json["non_finite_voxels"], 1);
+}
+
+#[test]
+fn doctor_always_answers() {
+    let json = Bench::new().run(&["doctor", "--json"]).json();
+    assert_eq!(keys(&json), ["adapters", "cpu_threads", "uses", "version", "why"]);
+    for adapter in json["adapters"].as_array().unwrap() {
+        assert_eq!(keys(adapter), ["api", "driver", "features", "limits", "name", "software", "tier"]);
+    }
+}
+
+#[test]
+fn bench_cast_lists_every_mode() {
+    let bench = Bench::new();
+    let small = ["bench", "cast", "sphere.nrrd", "--size", "16x16", "--frames", "2", "--backends", "cpu"];
+    let json = bench.run(&[&small[..], &["--json"]].concat()).json();
+    assert_eq!(keys(&json), ["device", "rows", "upload"]);
+    assert_eq!(keys(&json["device"]), ["cpu_threads", "driver", "gpu"]);
+    let rows = json["rows"].as_array().unwrap();
+    let looks: Vec<String> = rows
+        .iter()
+        .map(|row| format!("{}+{}", row["mode"].as_str().unwrap(), row["shading"].as_str().unwrap()))
+        .collect();
+    let expected = ["dvr+none", "dvr+phong", "mip+none", "minip+none", "mean+none", "xray+none", "iso+phong"];
+    assert_eq!(looks, expected);
+    let row_keys = ["backend", "frame_ms", "mode", "msamples_per_s", "samples", "shading", "volume"];
+    assert!(rows.iter().all(|row| keys(row) == row_keys && row["samples"].as_f64().unwrap() > 0.0));
+    let table =
+        bench.run(&[&small[..], &["--modes", "dvr,iso", "--shadings", "none,shadow"]].concat()).stdout;
+    assert_eq!(table.lines().filter(|line| line.starts_with("sphere ")).count(), 4, "{table}");
+}
+
+#[test]
+fn the_demo_makes_pictures_and_a_page_that_shows_them() {
+    let bench = Bench::new();
+    let run = bench.run(&["demo", "-o", "d", "--size", "24x24", "--backend", "cpu"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let page = std::fs::read_to_string(bench.path("d/index.html")).unwrap();
+    for (name, width) in
+        [("mono", 24), ("stereo", 48), ("anaglyph", 24), ("mip", 24), ("isosurface", 24), ("cut", 24)]
+    {
+        let file = format!("{name}.png");
+        assert!(page.contains(&format!("src=\"{file}\"")), "{file}");
+        assert_eq!(bench.png(&format!("d/{file}")).0, width);
+    }
+    assert!(run.stderr.contains("CPU renderer"), "{}", run.stderr);
+}
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    let bench = Bench::new();
+    for command in [
+        &[][..],
+        &["info"],
+        &["render"],
+        &["compare"],
+        &["phantom"],
+        &["doctor"],
+        &["demo"],
+        &["bench"],
+        &["bench", "cast"],
+    ] {
+        let run = bench.run(&[command, &["--help"]].concat());
+        assert_eq!(run.code, 0);
+        let example = format!("  wheatstone {}", command.join(" "));
+        assert!(run.stdout.contains("Examples:") && run.stdout.contains(example.trim_end()), "{command:?}");
+    }
+}
+
+#[test]
+fn every_flag_is_in_the_reference() {
+    let bench = Bench::new();
+    let reference = std::fs::read_to_string(repository_file("docs/cli.md")).unwrap();
+    for command in
+        [&["info"][..], &["render"], &["compare"], &["phantom"], &["doctor"], &["demo"], &["bench", "cast"]]
+    {
+        let help = bench.run(&[command, &["--help"]].concat()).stdout;
+        let flags = help
+            .lines()
+            .filter_map(|line| {
+                let line = line.trim_start();
+                let line = line.strip_prefix("-o, ").unwrap_or(line);
+                let name = line.strip_prefix("--")?;
+                let end = name.find(|c: char| c != '-' && !c.is_ascii_alphanumeric()).unwrap_or(name.len());
+                Some(format!("--{}", &name[..end]))
+            })
+            .filter(|flag| flag != "--help");
+        for flag in flags {
+            assert!(reference.contains(&format!("`{flag}")), "{command:?} {flag} is not in docs/cli.md");
+        }
+    }
+}
