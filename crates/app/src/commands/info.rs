@@ -45,7 +45,7 @@ fn as_json(args: &InfoArgs, loaded: &Loaded, statistics: &Statistics) -> Value {
     let robust = statistics.robust_window();
     let warnings: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
     json!({
-        "file": args.volume.file,
+        "file": args.volume.file.display().to_string(),
         "format": loaded.format.to_string(),
         "dims": grid.dims(),
         "type": volume.voxels().voxel_type().name(),

@@ -166,6 +166,7 @@ impl RenderArgs {
         let frame_ms = median(&made.frames_ms);
         let settings = &look.settings;
         if self.json {
+            let outputs: Vec<String> = made.outputs.iter().map(|path| path.display().to_string()).collect();
             let warnings: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
             return print_json(&json!({
                 "backend": engine.backend_name(),
@@ -183,7 +184,7 @@ impl RenderArgs {
                 "samples": made.samples,
                 "rays": self.rays(),
                 "upload_ms": milliseconds(engine.upload_time()),
-                "outputs": made.outputs,
+                "outputs": outputs,
                 "warnings": warnings,
             }));
         }

@@ -1,5 +1,7 @@
 //! The command line, run as users run it: on small phantoms, with the CPU renderer.
 
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
 mod pictures;
 mod refusals;
 mod reports;
