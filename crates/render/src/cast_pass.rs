@@ -27,7 +27,8 @@ pub(crate) struct Variant {
 impl Variant {
     /// The kernel for some parameters.
     pub(crate) fn of(parameters: &CastParameters) -> Self {
-        let is_cheap = parameters.shading == Shading::None && parameters.classifier != Classifier::ValueGradient;
+        let is_cheap =
+            parameters.shading == Shading::None && parameters.classifier != Classifier::ValueGradient;
         let (accumulator, is_shaded) = match parameters.mode {
             Mode::Composite if is_cheap => ("lib/accumulate_composite", true),
             Mode::Composite => ("lib/accumulate_composite_search", true),
@@ -65,8 +66,15 @@ impl Variant {
     fn all() -> Vec<Self> {
         let gradients = ["lib/gradient_central", "lib/gradient_tetrahedron"];
         let classifiers = ["lib/classify_value", "lib/classify_value_gradient", "lib/classify_preintegrated"];
-        let shadings = ["lib/shade_none", "lib/shade_phong", "lib/shade_shadow", "lib/shade_ambient", "lib/shade_directional"];
-        let projections = ["lib/accumulate_mip", "lib/accumulate_minip", "lib/accumulate_mean", "lib/accumulate_xray"];
+        let shadings = [
+            "lib/shade_none",
+            "lib/shade_phong",
+            "lib/shade_shadow",
+            "lib/shade_ambient",
+            "lib/shade_directional",
+        ];
+        let projections =
+            ["lib/accumulate_mip", "lib/accumulate_minip", "lib/accumulate_mean", "lib/accumulate_xray"];
         let mut all = Vec::new();
         for gradient in gradients {
             for shading in shadings {
@@ -119,11 +127,8 @@ pub(crate) struct CastPass {
 
 impl CastPass {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let frame_layout = bind_group_layout(
-            device,
-            "frame",
-            &[uniform::<CastUniform>(), uniform::<ViewUniform>()],
-        );
+        let frame_layout =
+            bind_group_layout(device, "frame", &[uniform::<CastUniform>(), uniform::<ViewUniform>()]);
         let volume_layout = bind_group_layout(
             device,
             "volume",
@@ -158,7 +163,11 @@ impl CastPass {
     ///
     /// # Errors
     /// [`GpuError::Refused`] if the driver does not take the kernel.
-    pub(crate) fn pipeline(&mut self, gpu: &Gpu, variant: Variant) -> Result<wgpu::ComputePipeline, GpuError> {
+    pub(crate) fn pipeline(
+        &mut self,
+        gpu: &Gpu,
+        variant: Variant,
+    ) -> Result<wgpu::ComputePipeline, GpuError> {
         if let Some(pipeline) = self.pipelines.get(&variant) {
             return Ok(pipeline.clone());
         }
@@ -231,7 +240,8 @@ fn bind_group_layout(
             count: None,
         })
         .collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+    device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
 fn uniform<T>() -> wgpu::BindingType {
@@ -273,7 +283,11 @@ mod tests {
                     Ok(module) => module,
                     Err(error) => {
                         let line = error.location(&source.text).map_or(0, |l| l.line_number as usize);
-                        return Some(format!("{variant:?} {:?}: {}", source.origin(line), error.emit_to_string(&source.text)));
+                        return Some(format!(
+                            "{variant:?} {:?}: {}",
+                            source.origin(line),
+                            error.emit_to_string(&source.text)
+                        ));
                     }
                 };
                 validator.validate(&module).err().map(|error| format!("{variant:?}: {error:?}"))

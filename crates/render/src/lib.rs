@@ -3,11 +3,11 @@
 //! [`Gpu`] is the device, [`GpuVolume`] an uploaded volume, [`Renderer`] the one loop over views. Every kernel
 //! has its CPU twin in `wheatstone_core::reference`.
 
-pub mod gpu;
-pub mod shader;
 mod cast_pass;
+pub mod gpu;
 mod pacer;
 mod renderer;
+pub mod shader;
 mod target;
 mod uniforms;
 mod volume;

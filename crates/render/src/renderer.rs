@@ -128,8 +128,14 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::render`].
-    pub fn render_to_host(&mut self, gpu: &Gpu, prepared: &Prepared, views: &[View]) -> Result<Vec<Cast>, GpuError> {
-        let targets: Vec<Target> = views.iter().map(|v| Target::new(gpu, v.size)).collect::<Result<_, _>>()?;
+    pub fn render_to_host(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        views: &[View],
+    ) -> Result<Vec<Cast>, GpuError> {
+        let targets: Vec<Target> =
+            views.iter().map(|v| Target::new(gpu, v.size)).collect::<Result<_, _>>()?;
         self.render(gpu, prepared, views, &targets)?;
         targets.iter().map(|target| target.read(gpu)).collect()
     }
@@ -139,7 +145,8 @@ impl Renderer {
         let [width, height] = view.size;
         let is_segmented = prepared.sample_limit != u32::MAX;
         let state_row_bytes = u64::from(width) * RAY_STATE_BYTES;
-        let most_rows = if is_segmented { (MOST_STATE_BYTES / state_row_bytes).max(1) as u32 } else { height };
+        let most_rows =
+            if is_segmented { (MOST_STATE_BYTES / state_row_bytes).max(1) as u32 } else { height };
         let state_rows = if is_segmented { most_rows.min(height) } else { 0 };
         let states = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("ray states"),

@@ -154,18 +154,56 @@ mod tests {
 
     #[test]
     fn cast_uniform_matches_wgsl() {
-        assert_layout!("lib/cast_parameters", "CastParameters", CastUniform, [
-            dims, sampling_factor, box_lo, value_scale, box_hi, value_offset, plane, metric_from_texture,
-            texture_from_metric, to_light, termination_alpha, shadow_step, xray_scale, surface_rgb, isovalue,
-            visible, lut_size, direction_count, directions,
-        ]);
+        assert_layout!(
+            "lib/cast_parameters",
+            "CastParameters",
+            CastUniform,
+            [
+                dims,
+                sampling_factor,
+                box_lo,
+                value_scale,
+                box_hi,
+                value_offset,
+                plane,
+                metric_from_texture,
+                texture_from_metric,
+                to_light,
+                termination_alpha,
+                shadow_step,
+                xray_scale,
+                surface_rgb,
+                isovalue,
+                visible,
+                lut_size,
+                direction_count,
+                directions,
+            ]
+        );
     }
 
     #[test]
     fn view_uniform_matches_wgsl() {
-        assert_layout!("lib/view", "View", ViewUniform, [
-            origin, near_m, origin_dx, far_m, origin_dy, width, direction, height, direction_dx, first_row,
-            direction_dy, row_count, first_sample, sample_limit,
-        ]);
+        assert_layout!(
+            "lib/view",
+            "View",
+            ViewUniform,
+            [
+                origin,
+                near_m,
+                origin_dx,
+                far_m,
+                origin_dy,
+                width,
+                direction,
+                height,
+                direction_dx,
+                first_row,
+                direction_dy,
+                row_count,
+                first_sample,
+                sample_limit,
+            ]
+        );
     }
 }

@@ -77,7 +77,8 @@ impl TexelFormat {
         match (self, stored) {
             (Self::R16FloatOf8Bit, StoredVoxels::U8(v)) => {
                 let half_of = std::array::from_fn::<f16, 256, _>(|i| f16::from_f32(i as f32));
-                bytemuck::cast_slice(&v.iter().map(|&x| half_of[usize::from(x)]).collect::<Vec<f16>>()).to_vec()
+                bytemuck::cast_slice(&v.iter().map(|&x| half_of[usize::from(x)]).collect::<Vec<f16>>())
+                    .to_vec()
             }
             (Self::R16FloatOf16Bit, StoredVoxels::U16(v)) => {
                 halves(&mut v.iter().map(|&x| f32::from(x) / 65535.0))

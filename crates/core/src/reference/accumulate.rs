@@ -1,11 +1,30 @@
 //! Accumulators: from the samples of a ray to a pixel.
+//!
+//! A ray is cast by `start`, `accumulate` over one or more ranges of samples, and `finish`.
 
-use super::classify::{Classified, Classify, Context, Isovalue};
+use super::classify::{Classify, Context, Isovalue};
 use super::ray::Ray;
 use super::shade::shade;
 use super::volume::Stored;
 use crate::cast::FIRST_HIT_ALPHA;
 use glam::Vec3A;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// What a ray has gathered so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RayState {
+    /// Premultiplied colour.
+    color: Vec3A,
+    /// What still passes through.
+    transmittance: f32,
+    /// Depth of the first hit, metres; infinite without one.
+    depth_m: f32,
+    /// The value before, the best value or the sum of values: each accumulator's own.
+    scalar: f32,
+    /// Samples taken.
+    samples: u32,
+}
 
 /// A finished ray.
 #[derive(Debug, Clone, Copy)]
@@ -18,122 +37,222 @@ pub(super) struct Pixel {
     pub(super) samples: u32,
 }
 
-impl Pixel {
-    pub(super) const EMPTY: Self = Self { color: [0.0; 4], depth_m: f32::INFINITY, samples: 0 };
-
-    fn opaque(rgb: [f32; 3], depth_m: f32, samples: u32) -> Self {
-        Self { color: [rgb[0], rgb[1], rgb[2], 1.0], depth_m, samples }
+impl RayState {
+    /// Nothing gathered, nothing hit.
+    fn new(scalar: f32) -> Self {
+        Self { color: Vec3A::ZERO, transmittance: 1.0, depth_m: f32::INFINITY, scalar, samples: 0 }
     }
+
+    /// The transfer function's colour of a projected value, opaque.
+    fn projected<T: Stored>(&self, context: &Context<'_, T>, value: f32) -> Pixel {
+        let [r, g, b, _] = context.parameters.lut.at(value);
+        Pixel { color: [r, g, b, 1.0], depth_m: self.depth_m, samples: self.samples }
+    }
+
+    /// The gathered colour and opacity.
+    fn pixel(&self) -> Pixel {
+        let [r, g, b] = self.color.to_array();
+        Pixel { color: [r, g, b, 1.0 - self.transmittance], depth_m: self.depth_m, samples: self.samples }
+    }
+}
+
+/// A way from samples to a pixel.
+pub(super) trait Accumulate {
+    /// The state before the first sample.
+    fn start<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> RayState;
+
+    /// Takes a range of samples that follows the one before.
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState);
+
+    /// The pixel of a ray whose samples are all taken.
+    fn finish<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &RayState) -> Pixel;
+}
+
+/// The value half a step before the first sample.
+fn value_at_entry<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> f32 {
+    context.sampler.value_at(ray.at(-0.5))
 }
 
 /// Front-to-back emission and absorption.
-pub(super) fn composite<C: Classify, T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
-    let mut color = Vec3A::ZERO;
-    let mut transmittance = 1.0_f32;
-    let mut depth_m = f32::INFINITY;
-    let mut previous = context.sampler.value_at(ray.at(-0.5));
-    let smallest_transmittance = 1.0 - context.parameters.termination_alpha;
-    let mut samples = ray.sample_count;
-    for i in 0..ray.sample_count {
-        let position = ray.at(i as f32);
-        let value = context.sampler.value_at(position);
-        if C::may_be_visible(context, value, previous) {
-            let classified = C::classify(context, position, value, previous);
-            let step_transmittance = (classified.entry[3] * ray.step_length).exp2();
-            if step_transmittance < 1.0 {
-                let rgb = shade::<C, T>(context, ray, position, &classified);
-                color += rgb * ((1.0 - step_transmittance) * transmittance);
-                transmittance *= step_transmittance;
-                if depth_m == f32::INFINITY && transmittance <= 1.0 - FIRST_HIT_ALPHA {
-                    depth_m = ray.depth_m(i as f32);
-                }
-                if transmittance <= smallest_transmittance {
-                    samples = i + 1;
-                    break;
+pub(super) struct Composite<C>(PhantomData<C>);
+
+impl<C: Classify> Accumulate for Composite<C> {
+    fn start<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> RayState {
+        RayState::new(value_at_entry(context, ray))
+    }
+
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+        let smallest_transmittance = 1.0 - context.parameters.termination_alpha;
+        for i in range {
+            let position = ray.at(i as f32);
+            let value = context.sampler.value_at(position);
+            state.samples += 1;
+            if C::may_be_visible(context, value, state.scalar) {
+                let classified = C::classify(context, position, value, state.scalar);
+                let step_transmittance = (classified.entry[3] * ray.step_length).exp2();
+                if step_transmittance < 1.0 {
+                    let rgb = shade::<C, T>(context, ray, position, &classified);
+                    state.color += rgb * ((1.0 - step_transmittance) * state.transmittance);
+                    state.transmittance *= step_transmittance;
+                    if state.depth_m == f32::INFINITY && state.transmittance <= 1.0 - FIRST_HIT_ALPHA {
+                        state.depth_m = ray.depth_m(i as f32);
+                    }
+                    if state.transmittance <= smallest_transmittance {
+                        return;
+                    }
                 }
             }
+            state.scalar = value;
         }
-        previous = value;
     }
-    Pixel { color: [color.x, color.y, color.z, 1.0 - transmittance], depth_m, samples }
+
+    fn finish<T: Stored>(_: &Context<'_, T>, _: &Ray, state: &RayState) -> Pixel {
+        state.pixel()
+    }
 }
 
 /// Maximum intensity projection; the first of equal maxima gives the depth.
-pub(super) fn mip<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
-    extreme(context, ray, -1.0, |value, best| value > best)
+pub(super) struct Mip;
+
+impl Accumulate for Mip {
+    fn start<T: Stored>(_: &Context<'_, T>, _: &Ray) -> RayState {
+        RayState::new(-1.0)
+    }
+
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+        keep_best(context, ray, range, state, |value, best| value > best);
+    }
+
+    fn finish<T: Stored>(context: &Context<'_, T>, _: &Ray, state: &RayState) -> Pixel {
+        state.projected(context, state.scalar)
+    }
 }
 
 /// Minimum intensity projection; the first of equal minima gives the depth.
-pub(super) fn minip<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
-    extreme(context, ray, 2.0, |value, best| value < best)
+pub(super) struct MinIp;
+
+impl Accumulate for MinIp {
+    fn start<T: Stored>(_: &Context<'_, T>, _: &Ray) -> RayState {
+        RayState::new(2.0)
+    }
+
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+        keep_best(context, ray, range, state, |value, best| value < best);
+    }
+
+    fn finish<T: Stored>(context: &Context<'_, T>, _: &Ray, state: &RayState) -> Pixel {
+        state.projected(context, state.scalar)
+    }
 }
 
-fn extreme<T: Stored>(
+fn keep_best<T: Stored>(
     context: &Context<'_, T>,
     ray: &Ray,
-    start: f32,
+    range: Range<u32>,
+    state: &mut RayState,
     is_better: impl Fn(f32, f32) -> bool,
-) -> Pixel {
-    let (mut best, mut best_index) = (start, 0);
-    for i in 0..ray.sample_count {
+) {
+    state.samples += range.end - range.start;
+    let mut best_index = None;
+    for i in range {
         let value = context.sampler.value_at(ray.at(i as f32));
-        if is_better(value, best) {
-            (best, best_index) = (value, i);
+        if is_better(value, state.scalar) {
+            state.scalar = value;
+            best_index = Some(i);
         }
     }
-    Pixel::opaque(projected_rgb(context, best), ray.depth_m(best_index as f32), ray.sample_count)
+    if let Some(index) = best_index {
+        state.depth_m = ray.depth_m(index as f32);
+    }
 }
 
 /// Mean of the values.
-pub(super) fn mean<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
-    let mean = sum(context, ray) / ray.sample_count as f32;
-    Pixel::opaque(projected_rgb(context, mean), ray.depth_m(0.0), ray.sample_count)
+pub(super) struct Mean;
+
+impl Accumulate for Mean {
+    fn start<T: Stored>(_: &Context<'_, T>, ray: &Ray) -> RayState {
+        RayState { depth_m: ray.depth_m(0.0), ..RayState::new(0.0) }
+    }
+
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+        add_values(context, ray, range, state);
+    }
+
+    fn finish<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &RayState) -> Pixel {
+        state.projected(context, state.scalar / ray.sample_count as f32)
+    }
 }
 
 /// Integral of the values over the volume's longest side.
-pub(super) fn xray<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
-    let integral = sum(context, ray) * ray.step_length * context.parameters.xray_scale;
-    Pixel::opaque(projected_rgb(context, integral.min(1.0)), ray.depth_m(0.0), ray.sample_count)
+pub(super) struct XRay;
+
+impl Accumulate for XRay {
+    fn start<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> RayState {
+        Mean::start(context, ray)
+    }
+
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+        add_values(context, ray, range, state);
+    }
+
+    fn finish<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &RayState) -> Pixel {
+        let integral = state.scalar * ray.step_length * context.parameters.xray_scale;
+        state.projected(context, integral.min(1.0))
+    }
 }
 
-fn sum<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> f32 {
-    (0..ray.sample_count).map(|i| context.sampler.value_at(ray.at(i as f32))).sum()
-}
-
-/// The transfer function's colour of a projected value, at no gradient.
-fn projected_rgb<T: Stored>(context: &Context<'_, T>, value: f32) -> [f32; 3] {
-    let [r, g, b, _] = context.parameters.lut.at(value);
-    [r, g, b]
+fn add_values<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+    state.samples += range.end - range.start;
+    for i in range {
+        state.scalar += context.sampler.value_at(ray.at(i as f32));
+    }
 }
 
 /// Halvings of the step in which an isosurface is found: to a thousandth of a voxel length.
 const BISECTIONS: u32 = 10;
 
 /// First crossing of the isovalue, in either direction.
-pub(super) fn first_hit<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
-    let isovalue = context.parameters.isovalue;
-    let mut previous_is_in = context.sampler.value_at(ray.at(-0.5)) >= isovalue;
-    let mut before = -0.5;
-    for i in 0..ray.sample_count {
-        let is_in = context.sampler.value_at(ray.at(i as f32)) >= isovalue;
-        if is_in != previous_is_in {
-            let (mut lo, mut hi) = (before, i as f32);
-            for _ in 0..BISECTIONS {
-                let middle = 0.5 * (lo + hi);
-                if (context.sampler.value_at(ray.at(middle)) >= isovalue) == is_in {
-                    hi = middle;
-                } else {
-                    lo = middle;
-                }
-            }
-            let index = 0.5 * (lo + hi);
-            let position = ray.at(index);
-            let classified: Classified = Isovalue::classify(context, position, isovalue, isovalue);
-            let rgb = shade::<Isovalue, T>(context, ray, position, &classified);
-            return Pixel::opaque(rgb.to_array(), ray.depth_m(index), i + 1);
-        }
-        previous_is_in = is_in;
-        before = i as f32;
+pub(super) struct FirstHit;
+
+impl Accumulate for FirstHit {
+    fn start<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> RayState {
+        RayState::new(value_at_entry(context, ray))
     }
-    Pixel { samples: ray.sample_count, ..Pixel::EMPTY }
+
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+        let isovalue = context.parameters.isovalue;
+        for i in range {
+            let value = context.sampler.value_at(ray.at(i as f32));
+            state.samples += 1;
+            if (value >= isovalue) != (state.scalar >= isovalue) {
+                let index = crossing(context, ray, i, value >= isovalue);
+                let position = ray.at(index);
+                let classified = Isovalue::classify(context, position, isovalue, isovalue);
+                state.color = shade::<Isovalue, T>(context, ray, position, &classified);
+                state.transmittance = 0.0;
+                state.depth_m = ray.depth_m(index);
+                return;
+            }
+            state.scalar = value;
+        }
+    }
+
+    fn finish<T: Stored>(_: &Context<'_, T>, _: &Ray, state: &RayState) -> Pixel {
+        state.pixel()
+    }
+}
+
+/// Where between sample i, which is (or is not) in, and the one before it the isovalue is crossed.
+fn crossing<T: Stored>(context: &Context<'_, T>, ray: &Ray, i: u32, is_in: bool) -> f32 {
+    let mut hi = i as f32;
+    let mut lo = if i == 0 { -0.5 } else { hi - 1.0 };
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (lo + hi);
+        if (context.sampler.value_at(ray.at(middle)) >= context.parameters.isovalue) == is_in {
+            hi = middle;
+        } else {
+            lo = middle;
+        }
+    }
+    0.5 * (lo + hi)
 }

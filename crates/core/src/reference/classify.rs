@@ -39,7 +39,12 @@ pub(super) trait Classify: Copy + Send + Sync {
     }
 
     /// Colour and opacity of a sample.
-    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3A, value: f32, previous: f32) -> Classified;
+    fn classify<T: Stored>(
+        context: &Context<'_, T>,
+        position: Vec3A,
+        value: f32,
+        previous: f32,
+    ) -> Classified;
 
     /// Log2 transmittance of one voxel length at a position, for shading rays.
     fn log2_transmittance_at<T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {

@@ -1,6 +1,6 @@
 //! The caster: a volume ready for sampling, and pictures of it.
 
-use super::accumulate::{self, Pixel};
+use super::accumulate::{Accumulate, Composite, FirstHit, Mean, MinIp, Mip, Pixel, XRay};
 use super::classify::{Context, PreIntegrated, Value, ValueGradient};
 use super::ray::Ray;
 use super::volume::{PaddedVoxels, Sampler, Stored};
@@ -71,41 +71,33 @@ fn cast_view<T: Stored>(sampler: Sampler<'_, T>, parameters: &CastParameters, vi
     let context = Context { sampler, parameters };
     match (parameters.mode, parameters.classifier) {
         (Mode::Composite, Classifier::ValueGradient) => {
-            cast_tiles(parameters, view, |ray| accumulate::composite::<ValueGradient, T>(&context, ray))
+            cast_tiles::<Composite<ValueGradient>, T>(&context, view)
         }
         (Mode::Composite, Classifier::PreIntegrated) => {
-            cast_tiles(parameters, view, |ray| accumulate::composite::<PreIntegrated, T>(&context, ray))
+            cast_tiles::<Composite<PreIntegrated>, T>(&context, view)
         }
-        (Mode::Composite, _) => {
-            cast_tiles(parameters, view, |ray| accumulate::composite::<Value, T>(&context, ray))
-        }
-        (Mode::Mip, _) => cast_tiles(parameters, view, |ray| accumulate::mip(&context, ray)),
-        (Mode::MinIp, _) => cast_tiles(parameters, view, |ray| accumulate::minip(&context, ray)),
-        (Mode::Mean, _) => cast_tiles(parameters, view, |ray| accumulate::mean(&context, ray)),
-        (Mode::XRay, _) => cast_tiles(parameters, view, |ray| accumulate::xray(&context, ray)),
-        (Mode::Isosurface { .. }, _) => {
-            cast_tiles(parameters, view, |ray| accumulate::first_hit(&context, ray))
-        }
+        (Mode::Composite, _) => cast_tiles::<Composite<Value>, T>(&context, view),
+        (Mode::Mip, _) => cast_tiles::<Mip, T>(&context, view),
+        (Mode::MinIp, _) => cast_tiles::<MinIp, T>(&context, view),
+        (Mode::Mean, _) => cast_tiles::<Mean, T>(&context, view),
+        (Mode::XRay, _) => cast_tiles::<XRay, T>(&context, view),
+        (Mode::Isosurface { .. }, _) => cast_tiles::<FirstHit, T>(&context, view),
     }
 }
 
-fn cast_tiles(
-    parameters: &CastParameters,
-    view: &View,
-    accumulate: impl Fn(&Ray) -> Pixel + Sync,
-) -> Cast {
-    let rays = RayField::new(view, parameters.texture_from_world);
+fn cast_tiles<A: Accumulate, T: Stored>(context: &Context<'_, T>, view: &View) -> Cast {
+    let rays = RayField::new(view, context.parameters.texture_from_world);
     let [width, height] = view.size;
     let tiles: Vec<(u32, u32)> = (0..height.div_ceil(TILE))
         .flat_map(|row| (0..width.div_ceil(TILE)).map(move |column| (column * TILE, row * TILE)))
         .collect();
     let cast_tile = |&(left, top): &(u32, u32)| -> Vec<(usize, Pixel)> {
-        let rows = top..(top + TILE).min(height);
-        rows.flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x, y)))
+        (top..(top + TILE).min(height))
+            .flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x, y)))
             .filter_map(|(x, y)| {
-                let ray = Ray::of_pixel(&rays, parameters, x, y);
-                (ray.sample_count > 0)
-                    .then(|| (y as usize * width as usize + x as usize, accumulate(&ray)))
+                let ray = Ray::of_pixel(&rays, context.parameters, x, y);
+                let pixel_index = y as usize * width as usize + x as usize;
+                (ray.sample_count > 0).then(|| (pixel_index, cast_ray::<A, T>(context, &ray)))
             })
             .collect()
     };
@@ -118,4 +110,10 @@ fn cast_tiles(
         samples += u64::from(pixel.samples);
     }
     Cast { image, samples }
+}
+
+fn cast_ray<A: Accumulate, T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
+    let mut state = A::start(context, ray);
+    A::accumulate(context, ray, 0..ray.sample_count, &mut state);
+    A::finish(context, ray, &state)
 }

@@ -30,8 +30,7 @@ pub struct Lut {
 impl Lut {
     /// Bakes a 1D or 2D transfer function.
     pub fn bake(transfer: &TransferFunction) -> Self {
-        let (width, height) =
-            if transfer.is_2d() { (VALUES_2D, GRADIENTS_2D) } else { (VALUES_1D, 1) };
+        let (width, height) = if transfer.is_2d() { (VALUES_2D, GRADIENTS_2D) } else { (VALUES_1D, 1) };
         let gradient_alpha: Vec<f32> =
             (0..height).map(|row| transfer.gradient_opacity_at(coordinate(row, height))).collect();
         let columns: Vec<([f32; 3], f32)> = (0..width)
@@ -40,7 +39,9 @@ impl Lut {
             .collect();
         let entries = gradient_alpha
             .iter()
-            .flat_map(|&factor| columns.iter().map(move |&([r, g, b], alpha)| [r, g, b, log2_transmittance(alpha * factor)]))
+            .flat_map(|&factor| {
+                columns.iter().map(move |&([r, g, b], alpha)| [r, g, b, log2_transmittance(alpha * factor)])
+            })
             .collect();
         Self::from_entries(width, height, entries)
     }
@@ -57,7 +58,8 @@ impl Lut {
             let weighted = [f64::from(r), f64::from(g), f64::from(b), 1.0].map(|c| c * extinction);
             integral[i + 1] = [0, 1, 2, 3].map(|c| integral[i][c] + weighted[c]);
         }
-        let fine_index = |end: usize| (coordinate(end, SEGMENT_ENDS) * (fine.width - 1) as f32 + 0.5) as usize;
+        let fine_index =
+            |end: usize| (coordinate(end, SEGMENT_ENDS) * (fine.width - 1) as f32 + 0.5) as usize;
         let entries = (0..SEGMENT_ENDS * SEGMENT_ENDS)
             .map(|i| {
                 let (front, back) = (fine_index(i % SEGMENT_ENDS), fine_index(i / SEGMENT_ENDS));

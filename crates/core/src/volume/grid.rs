@@ -128,12 +128,10 @@ impl Grid {
         let mut letters = [' '; 3];
         let mut free_rows = vec![0, 1, 2];
         let mut free_columns = vec![0, 1, 2];
-        while let Some((row, column)) = free_rows
-            .iter()
-            .flat_map(|&row| free_columns.iter().map(move |&column| (row, column)))
-            .max_by(|&(r0, c0), &(r1, c1)| {
-                direction.col(c0)[r0].abs().total_cmp(&direction.col(c1)[r1].abs())
-            })
+        while let Some((row, column)) =
+            free_rows.iter().flat_map(|&row| free_columns.iter().map(move |&column| (row, column))).max_by(
+                |&(r0, c0), &(r1, c1)| direction.col(c0)[r0].abs().total_cmp(&direction.col(c1)[r1].abs()),
+            )
         {
             let [negative, positive] = [['L', 'R'], ['P', 'A'], ['I', 'S']][row];
             letters[column] = if direction.col(column)[row] < 0.0 { negative } else { positive };

@@ -87,7 +87,9 @@ impl Encoding {
     pub fn encode(&self, voxels: &Voxels, range: Range<usize>) -> StoredVoxels {
         let to_stored = |x: f64| (x - self.value_at_zero) / self.value_per_stored;
         match (self.kind, voxels) {
-            (StorageKind::U8, Voxels::U8(v)) if self.value_at_zero == 0.0 => StoredVoxels::U8(v[range].to_vec()),
+            (StorageKind::U8, Voxels::U8(v)) if self.value_at_zero == 0.0 => {
+                StoredVoxels::U8(v[range].to_vec())
+            }
             (StorageKind::U16, Voxels::U16(v)) if self.value_at_zero == 0.0 => {
                 StoredVoxels::U16(v[range].to_vec())
             }
@@ -137,7 +139,8 @@ mod tests {
             assert_eq!(kind, expected_kind, "{:?}", volume.voxels());
             let encoding = Encoding::new(&volume, kind);
             let back = decoded(encoding, encoding.encode(volume.voxels(), 0..3));
-            let tolerance = if kind == StorageKind::F32 { (volume.range().1 - volume.range().0) * 1e-7 } else { 0.0 };
+            let tolerance =
+                if kind == StorageKind::F32 { (volume.range().1 - volume.range().0) * 1e-7 } else { 0.0 };
             for (value, back) in values.iter().zip(&back) {
                 assert!((value - back).abs() <= tolerance, "{value} {back}");
             }

@@ -166,9 +166,11 @@ fn finite_range<T: Voxel>(voxels: &[T]) -> Option<(f64, f64)> {
     let (lo, hi) = voxels
         .par_chunks(1 << 16)
         .map(|chunk| {
-            chunk.iter().map(|x| x.to_f64()).filter(|&x| is_usable(x)).fold(NOTHING, |(lo, hi), x| {
-                (if x < lo { x } else { lo }, if x > hi { x } else { hi })
-            })
+            chunk
+                .iter()
+                .map(|x| x.to_f64())
+                .filter(|&x| is_usable(x))
+                .fold(NOTHING, |(lo, hi), x| (if x < lo { x } else { lo }, if x > hi { x } else { hi }))
         })
         .reduce(|| NOTHING, |a, b| (a.0.min(b.0), a.1.max(b.1)));
     (lo <= hi).then_some((lo, hi))

@@ -75,10 +75,8 @@ impl Composer<'_> {
         self.open.push(path.to_owned());
         let is_import = |line: &&str| line.starts_with("import ");
         for line in text.lines().filter(is_import) {
-            let imported = import_path(line).ok_or_else(|| ComposeError::Syntax {
-                file: path.to_owned(),
-                line: line.to_owned(),
-            })?;
+            let imported = import_path(line)
+                .ok_or_else(|| ComposeError::Syntax { file: path.to_owned(), line: line.to_owned() })?;
             self.include(&imported, path)?;
         }
         self.open.pop();
