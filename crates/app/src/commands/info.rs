@@ -18,12 +18,12 @@ const PERCENTILES: [f64; 9] = [0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9
     wheatstone info ct.nrrd --json\n  \
     wheatstone info scan.raw --raw-size 64x64x32 --raw-type int16 --raw-spacing 0.5,0.5,2")]
 pub(crate) struct InfoArgs {
-    #[command(flatten)]
-    volume: VolumeArgs,
-
     /// Print one JSON object on standard output.
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    volume: VolumeArgs,
 }
 
 /// Runs the command.

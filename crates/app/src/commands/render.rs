@@ -31,18 +31,9 @@ use wheatstone_io::Loaded;
     wheatstone render head.nii.gz -o turn.png --turntable 36\n\n\
     --tf, --iso, V and G are normalised: 0 and 1 are the ends of the window. docs/cli.md tells which window counts.")]
 pub(crate) struct RenderArgs {
-    #[command(flatten)]
-    volume: VolumeArgs,
-
     /// The PNG file to write.
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
-
-    #[command(flatten)]
-    camera: CameraArgs,
-
-    #[command(flatten)]
-    look: LookArgs,
 
     /// Colour behind the volume.
     #[arg(long, value_name = "RRGGBB", default_value = "000000", value_parser = spec::color)]
@@ -67,6 +58,15 @@ pub(crate) struct RenderArgs {
     /// Print one JSON object on standard output.
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    camera: CameraArgs,
+
+    #[command(flatten)]
+    look: LookArgs,
+
+    #[command(flatten)]
+    volume: VolumeArgs,
 }
 
 /// What was made and how long it took.

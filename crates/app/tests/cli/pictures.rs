@@ -113,3 +113,19 @@ fn a_turntable_is_a_numbered_sequence() {
     let same = bench.run(&["compare", "q.png", "t_0001.png", "--json"]).json();
     assert_eq!(same["max_abs"], 0.0);
 }
+
+#[test]
+fn the_gpu_makes_the_same_picture() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let flags = ["--shading", "phong", "--stereo", "top-bottom", "--azimuth", "20", "--tf", "generic"];
+    bench.render("cpu.png", &flags);
+    let gpu = ["render", "sphere.nrrd", "-o", "gpu.png", "--backend", "gpu", "--size", "32x24", "--json"];
+    let run = bench.run(&[&gpu[..], &flags].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert_eq!(run.json()["backend"], "gpu");
+    let compared = bench.run(&["compare", "cpu.png", "gpu.png", "--json"]).json();
+    assert!(compared["dssim"].as_f64().unwrap() <= 0.002, "{compared}");
+}

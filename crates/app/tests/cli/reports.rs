@@ -162,6 +162,34 @@ fn the_demo_makes_pictures_and_a_page_that_shows_them() {
     assert!(run.stderr.contains("CPU renderer"), "{}", run.stderr);
 }
 
+/// Hides every Vulkan driver from the binary.
+#[cfg(target_os = "linux")]
+const NO_DRIVERS: [(&str, &str); 2] = [("VK_DRIVER_FILES", "/dev/null"), ("VK_ICD_FILENAMES", "/dev/null")];
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_an_adapter_auto_falls_back_and_gpu_fails() {
+    let bench = Bench::new();
+    let run = |args: &[&str]| bench.run_in(args, &NO_DRIVERS);
+    let render = ["render", "sphere.nrrd", "-o", "x.png", "--size", "16x16", "--backend"];
+    let auto = run(&[&render[..], &["auto"]].concat());
+    assert_eq!(auto.code, 0, "{}", auto.stderr);
+    assert!(auto.stderr.contains("note: ") && auto.stderr.contains("CPU renderer"), "{}", auto.stderr);
+    std::fs::remove_file(bench.path("x.png")).unwrap();
+    let gpu = run(&[&render[..], &["gpu"]].concat());
+    assert_eq!(gpu.code, 1, "{}", gpu.stderr);
+    assert!(gpu.stderr.contains("error: no usable GPU adapter"), "{}", gpu.stderr);
+    assert!(!bench.path("x.png").exists());
+    let demo = run(&["demo", "-o", "d", "--size", "8x8"]);
+    assert_eq!(demo.code, 0, "{}", demo.stderr);
+    assert!(demo.stderr.contains("CPU renderer"), "{}", demo.stderr);
+    let doctor = run(&["doctor", "--json"]).json();
+    assert_eq!(doctor["uses"], "cpu");
+    let measured = run(&["bench", "cast", "sphere.nrrd", "--size", "8x8", "--frames", "1", "--modes", "mip"]);
+    assert_eq!(measured.code, 0, "{}", measured.stderr);
+    assert!(measured.stderr.contains("CPU renderer only"), "{}", measured.stderr);
+}
+
 #[test]
 fn every_command_has_help_with_an_example() {
     let bench = Bench::new();

@@ -27,9 +27,15 @@ impl Bench {
 
     /// Runs the binary in the folder.
     pub(crate) fn run(&self, args: &[&str]) -> Run {
+        self.run_in(args, &[])
+    }
+
+    /// Runs the binary in the folder with some environment variables.
+    pub(crate) fn run_in(&self, args: &[&str], environment: &[(&str, &str)]) -> Run {
         let output = Command::new(env!("CARGO_BIN_EXE_wheatstone"))
             .args(args)
             .current_dir(self.folder.path())
+            .envs(environment.iter().copied())
             .output()
             .unwrap();
         Run::from(output)
