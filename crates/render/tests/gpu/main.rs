@@ -1,0 +1,13 @@
+//! The GPU ray caster against the reference ray caster, on software Vulkan where there is any, else on the best device.
+//!
+//! A missing adapter fails these tests. `WHEATSTONE_SKIP_GPU_TESTS=1` skips them, and they say so.
+
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "all of this crate is test code")]
+
+mod device;
+mod errors;
+mod parity;
+mod scene;
+mod segments;
+mod tolerance;
+mod upload;

@@ -1,0 +1,116 @@
+//! Casts that are split along their rays or into rows of the picture equal casts in one go.
+
+use crate::device::on_device;
+use crate::scene::*;
+use crate::tolerance;
+use glam::DVec3;
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::scene::{Mode, Settings, Shading};
+use wheatstone_core::view::View;
+use wheatstone_core::volume::{Volume, VoxelType};
+use wheatstone_render::{GpuVolume, Renderer, TexelFormat};
+
+/// Loop iterations per invocation that the renderer never exceeds in one dispatch: above it rays are split.
+const ITERATION_LIMIT: f32 = 60_000.0;
+
+fn volume() -> Volume {
+    blob_volume([16, 14, 12], spacing([1.0; 3]), VoxelType::U16)
+}
+
+/// Along x, so that every ray that meets the volume has 16 voxels of it.
+fn view() -> View {
+    let size = [9, 7];
+    look(DVec3::new(1.5, 0.0, 0.0), DVec3::ZERO, orthographic(0.8, size), size)
+}
+
+/// A mode or shading, and the loop iterations that a sample costs with it.
+fn cases(volume: &Volume) -> Vec<(String, Settings, f32)> {
+    // Never opaque, so that rays reach their last segment.
+    let plain = Settings { early_termination: None, ..Settings::new(volume.full_window(), transfer(0.15)) };
+    let mut cases: Vec<(String, Settings, f32)> = Vec::new();
+    for mode in [Mode::Composite, Mode::Mip, Mode::MinIp, Mode::Mean, Mode::XRay] {
+        cases.push((format!("{mode:?}"), Settings { mode, ..plain.clone() }, 1.0));
+    }
+    cases.push(("pre-integrated".into(), Settings { preintegrated: true, ..plain.clone() }, 1.0));
+    let shadings =
+        [(Shading::Shadow, 25.0), (Shading::Ambient, 15.0), (Shading::Directional { directions: 64 }, 65.0)];
+    for (shading, cost) in shadings {
+        cases.push((format!("composite {shading:?}"), Settings { shading, ..plain.clone() }, cost));
+        // A surface near the far end, where the first segments find nothing.
+        let mode = Mode::Isosurface { isovalue: 0.3 };
+        cases.push((format!("iso {shading:?}"), Settings { mode, shading, ..plain.clone() }, cost));
+    }
+    cases
+}
+
+#[test]
+fn rays_in_segments_are_whole_rays() {
+    let volume = volume();
+    on_device(|gpu, renderer| {
+        let mut failures = Vec::new();
+        let mut worst = (0.0, String::new());
+        for (name, settings, cost) in cases(&volume) {
+            // Two and a half segments over the 16 voxels of a ray.
+            let sampling_factor = 2.5 * ITERATION_LIMIT / cost / 16.0;
+            let settings = Settings { sampling_factor, ..settings };
+            let parameters = CastParameters::new(&settings, &placement(&volume));
+            let views = [view()];
+            let cpu = cast_on_cpu(&volume, TexelFormat::R16Unorm, &parameters, &views).remove(0);
+            let found = cast_on_gpu(gpu, renderer, &volume, TexelFormat::R16Unorm, &settings, &views).unwrap().remove(0);
+            let difference = largest_difference(&cpu, &found);
+            if difference > worst.0 {
+                worst = (difference, name.clone());
+            }
+            if difference > tolerance::MANY_SAMPLES {
+                failures.push(format!("{name}: largest difference {difference}"));
+            }
+            if cpu.samples.abs_diff(found.samples) as f64 > tolerance::SAMPLES * cpu.samples as f64 {
+                failures.push(format!("{name}: {} samples on the CPU, {} on the GPU", cpu.samples, found.samples));
+            }
+            let step_m = placement(&volume).voxel_length_m() / f64::from(sampling_factor);
+            let depths = cpu.image.depth_m.iter().zip(&found.image.depth_m);
+            // Many equal extremes: their depth is any of them.
+            let is_unique = !matches!(settings.mode, Mode::Mip | Mode::MinIp);
+            for (a, b) in depths.filter(|_| is_unique) {
+                let same = a == b || f64::from((a - b).abs()) < 20.0 * step_m;
+                if !same {
+                    failures.push(format!("{name}: depth {a} on the CPU, {b} on the GPU"));
+                }
+            }
+        }
+        eprintln!("segments: largest difference {:.5} ({})", worst.0, worst.1);
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+    });
+}
+
+/// The first dispatch of a renderer takes 65,536 pixels, so this narrow tower is cast in at least two pieces, and in
+/// other pieces once the renderer has learnt how long they take.
+#[test]
+fn rows_in_pieces_are_whole_pictures() {
+    let volume = volume();
+    let size = [8, 9001];
+    let view = look(DVec3::new(0.6, 0.4, 1.2), DVec3::ZERO, off_axis(1.2, size, 0.0), size);
+    on_device(|gpu, shared| {
+        let settings = Settings { shading: Shading::Phong, ..Settings::new(volume.full_window(), transfer(0.6)) };
+        let parameters = CastParameters::new(&settings, &placement(&volume));
+        let uploaded = GpuVolume::upload_as(gpu, &volume, TexelFormat::R16Unorm, &mut |_, _| {}).unwrap();
+        let mut fresh = Renderer::new(gpu).unwrap();
+        let cpu = cast_on_cpu(&volume, TexelFormat::R16Unorm, &parameters, &[view]).remove(0);
+        let mut pictures = Vec::new();
+        for renderer in [&mut fresh, shared] {
+            let prepared = renderer.prepare(gpu, &uploaded, parameters.clone()).unwrap();
+            for _ in 0..3 {
+                pictures.push(renderer.render_to_host(gpu, &prepared, &[view]).unwrap().remove(0));
+            }
+        }
+        let black = |cast: &wheatstone_core::reference::Cast| cast.image.over_background([0.0; 3]);
+        let found = wheatstone_core::metrics::compare(&black(&cpu), &black(&pictures[0])).unwrap();
+        assert!(found.dssim() <= tolerance::dssim(TexelFormat::R16Unorm), "{found:?}");
+        for (i, picture) in pictures.iter().enumerate() {
+            let difference = largest_difference(&pictures[0], picture);
+            assert!(difference <= tolerance::PIECES, "picture {i} differs by {difference}");
+            assert_eq!(picture.samples, pictures[0].samples, "picture {i}");
+            assert_eq!(picture.image.depth_m, pictures[0].image.depth_m, "picture {i}");
+        }
+    });
+}
