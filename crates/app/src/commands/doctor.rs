@@ -65,7 +65,7 @@ fn adapter_json(adapter: &AdapterDescription) -> Value {
         "name": adapter.name,
         "driver": adapter.driver,
         "api": adapter.backend,
-        "software": adapter.is_software,
+        "is_software": adapter.is_software,
         "tier": can.tier().name(),
         "features": {
             "16bit_norm": can.has_16bit_norm,

@@ -121,7 +121,7 @@ fn doctor_always_answers() {
     let json = Bench::new().run(&["doctor", "--json"]).json();
     assert_eq!(keys(&json), ["adapters", "cpu_threads", "uses", "version", "why"]);
     for adapter in json["adapters"].as_array().unwrap() {
-        assert_eq!(keys(adapter), ["api", "driver", "features", "limits", "name", "software", "tier"]);
+        assert_eq!(keys(adapter), ["api", "driver", "features", "is_software", "limits", "name", "tier"]);
     }
 }
 
