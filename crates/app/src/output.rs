@@ -39,9 +39,9 @@ pub(crate) fn check_writable(path: &Path, extension: &str) -> Result<(), Failure
 /// Refuses a folder that no file can be made in.
 pub(crate) fn check_folder(folder: &Path) -> Result<(), Failure> {
     let probe = tempfile::Builder::new().prefix(".wheatstone-").suffix(".part").tempfile_in(folder);
-    probe
-        .map(drop)
-        .map_err(|error| Failure::input(format!("{}: cannot create a file here ({error})", folder.display())))
+    probe.map(drop).map_err(|error| {
+        Failure::input(format!("{}: cannot create a file here ({})", folder.display(), error.kind()))
+    })
 }
 
 /// The path of frame `index` of a sequence: `OUT.png` becomes `OUT_0000.png`.
