@@ -226,7 +226,7 @@ impl ReadError {
 #[non_exhaustive]
 pub enum WriteError {
     /// The folder of the path is missing or cannot be written to.
-    #[error("{}: cannot create a file here ({error}); expected a writable folder", folder.display())]
+    #[error("{}: cannot create a file here ({}); expected a writable folder", folder.display(), error.kind())]
     Folder {
         /// The folder.
         folder: PathBuf,
@@ -242,7 +242,7 @@ pub enum WriteError {
         error: io::Error,
     },
     /// The finished file could not take its place.
-    #[error("{}: cannot replace ({error}); expected a path that a file can have", path.display())]
+    #[error("{}: cannot replace ({}); expected a path that a file can have", path.display(), error.kind())]
     Replace {
         /// The file to be written.
         path: PathBuf,

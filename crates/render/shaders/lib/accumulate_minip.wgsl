@@ -1,29 +1,9 @@
-import package::lib::lut::{lut_at};
-import package::lib::ray::{Ray, ray_at, ray_depth_m};
-import package::lib::ray_state::{Pixel, RayState, opaque_pixel};
-import package::lib::volume::{value_at};
+import package::lib::extreme_value::{accumulate, finish_ray, start_ray};
 
-fn start_ray(ray: Ray) -> RayState {
-    return RayState(vec3f(0.0), 0.0, 0.0, 2.0, 0u, 0u);
-}
+// Minimum intensity projection.
 
-// Minimum intensity projection; the first of equal minima gives the depth.
-fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
-    var state = before;
-    var best_index = -1.0;
-    for (var i = begin; i < end; i++) {
-        let value = value_at(ray_at(ray, f32(i)));
-        let is_better = value < state.scalar;
-        state.scalar = select(state.scalar, value, is_better);
-        best_index = select(best_index, f32(i), is_better);
-    }
-    if best_index >= 0.0 {
-        state.depth_m = ray_depth_m(ray, best_index);
-    }
-    state.samples += end - begin;
-    return state;
-}
+const WORST: f32 = 2.0;
 
-fn finish_ray(ray: Ray, state: RayState) -> Pixel {
-    return opaque_pixel(lut_at(state.scalar).rgb, state);
+fn is_better(value: f32, best: f32) -> bool {
+    return value < best;
 }

@@ -24,6 +24,7 @@ files! {
     "lib/classify_value",
     "lib/classify_value_gradient",
     "lib/composite",
+    "lib/extreme_value",
     "lib/gradient_central",
     "lib/gradient_tetrahedron",
     "lib/lut",

@@ -1,0 +1,30 @@
+import package::lib::lut::{lut_at};
+import package::lib::ray::{Ray, ray_at, ray_depth_m};
+import package::lib::ray_state::{Pixel, RayState, opaque_pixel};
+import package::lib::volume::{value_at};
+
+// The best value along a ray; the first of equal ones gives the depth. WORST and is_better are the including file's.
+
+fn start_ray(ray: Ray) -> RayState {
+    return RayState(vec3f(0.0), 0.0, 0.0, WORST, 0u, 0u);
+}
+
+fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
+    var state = before;
+    var best_index = -1.0;
+    for (var i = begin; i < end; i++) {
+        let value = value_at(ray_at(ray, f32(i)));
+        let is_new_best = is_better(value, state.scalar);
+        state.scalar = select(state.scalar, value, is_new_best);
+        best_index = select(best_index, f32(i), is_new_best);
+    }
+    if best_index >= 0.0 {
+        state.depth_m = ray_depth_m(ray, best_index);
+    }
+    state.samples += end - begin;
+    return state;
+}
+
+fn finish_ray(ray: Ray, state: RayState) -> Pixel {
+    return opaque_pixel(lut_at(state.scalar).rgb, state);
+}
