@@ -31,7 +31,7 @@ impl Variant {
             parameters.shading == Shading::None && parameters.classifier != Classifier::ValueGradient;
         let (accumulator, is_shaded) = match parameters.mode {
             Mode::Composite if is_cheap => ("lib/accumulate_composite", true),
-            Mode::Composite => ("lib/accumulate_composite_search", true),
+            Mode::Composite => (SEARCHING, true),
             Mode::Mip => ("lib/accumulate_mip", false),
             Mode::MinIp => ("lib/accumulate_minip", false),
             Mode::Mean => ("lib/accumulate_mean", false),
@@ -105,14 +105,25 @@ impl Variant {
     }
 }
 
-/// Loop iterations that a visible sample costs at most.
+/// The accumulator for samples that cost much to blend.
+const SEARCHING: &str = "lib/accumulate_composite_search";
+
+/// Loop iterations beside shading that a sample of the searching accumulator costs at most: its own, the one that ends
+/// the search, and those that it waits for while the seven others of a group of eight rays search in turn.
+const SEARCH_ITERATIONS: u32 = 10;
+
+/// Loop iterations that a sample costs at most. A loop of n counts n + 1: drivers count the one that ends it.
 pub(crate) fn iterations_per_sample(parameters: &CastParameters) -> u32 {
-    1 + match parameters.shading {
-        Shading::None | Shading::Phong => 0,
-        Shading::Shadow => SHADOW_SAMPLES,
-        Shading::Ambient => 14,
-        Shading::Directional { .. } => parameters.directions.len() as u32,
+    if Variant::of(parameters).accumulator != SEARCHING {
+        return 1;
     }
+    SEARCH_ITERATIONS
+        + match parameters.shading {
+            Shading::None | Shading::Phong => 0,
+            Shading::Shadow => SHADOW_SAMPLES + 1,
+            Shading::Ambient => 14 + 1,
+            Shading::Directional { .. } => parameters.directions.len() as u32 + 1,
+        }
 }
 
 /// Layouts of the cast pass and the pipelines built so far.
@@ -133,13 +144,9 @@ impl CastPass {
             device,
             "volume",
             &[
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D3,
-                    multisampled: false,
-                },
+                sampled_texture(wgpu::TextureViewDimension::D3, true),
                 wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                storage_buffer(true, 16),
+                sampled_texture(wgpu::TextureViewDimension::D2, false),
             ],
         );
         let target_layout = bind_group_layout(
@@ -148,7 +155,7 @@ impl CastPass {
             &[
                 storage_texture(wgpu::TextureFormat::Rgba32Float),
                 storage_texture(wgpu::TextureFormat::Rg32Float),
-                storage_buffer(false, RAY_STATE_BYTES),
+                storage_buffer(RAY_STATE_BYTES),
             ],
         );
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -248,8 +255,16 @@ fn uniform<T>() -> wgpu::BindingType {
     buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
 }
 
-fn storage_buffer(read_only: bool, smallest: u64) -> wgpu::BindingType {
-    buffer(wgpu::BufferBindingType::Storage { read_only }, smallest)
+fn storage_buffer(smallest: u64) -> wgpu::BindingType {
+    buffer(wgpu::BufferBindingType::Storage { read_only: false }, smallest)
+}
+
+fn sampled_texture(view_dimension: wgpu::TextureViewDimension, filterable: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable },
+        view_dimension,
+        multisampled: false,
+    }
 }
 
 fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {
