@@ -49,7 +49,9 @@ fn resolved_volumes() -> Vec<(&'static str, Volume, Window)> {
         let ball = |x: f64, y: f64, z: f64, width: f64| {
             (-(p - DVec3::new(x, y, z)).length_squared() / (width * width)).exp()
         };
-        ball(10.0, 12.0, 9.0, 5.0).max(0.7 * ball(22.0, 9.0, 16.0, 7.0)).max(0.4 * ball(15.0, 22.0, 20.0, 6.0))
+        ball(10.0, 12.0, 9.0, 5.0)
+            .max(0.7 * ball(22.0, 9.0, 16.0, 7.0))
+            .max(0.4 * ball(15.0, 22.0, 20.0, 6.0))
     };
     // A period of 16 voxels.
     let gyroid = |p: DVec3| {

@@ -12,9 +12,9 @@ pub(crate) fn on_device(test: impl FnOnce(&Gpu, &mut Renderer)) {
         return;
     }
     let (gpu, renderer) = DEVICE.get_or_init(|| {
-        let gpu = Gpu::open_software()
-            .or_else(|_| Gpu::open_best())
-            .unwrap_or_else(|error| panic!("{error}; WHEATSTONE_SKIP_GPU_TESTS=1 skips the tests that need one"));
+        let gpu = Gpu::open_software().or_else(|_| Gpu::open_best()).unwrap_or_else(|error| {
+            panic!("{error}; WHEATSTONE_SKIP_GPU_TESTS=1 skips the tests that need one")
+        });
         eprintln!("{} ({})", gpu.description().name, gpu.description().driver);
         let renderer = Mutex::new(Renderer::new(&gpu).unwrap());
         (gpu, renderer)

@@ -6,7 +6,7 @@ use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Mode, Settings, Shading};
 use wheatstone_core::view::Rig;
-use wheatstone_core::volume::{Grid, Volume, Voxels, VoxelType};
+use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels};
 use wheatstone_render::{GpuError, GpuVolume, Target, TexelFormat};
 
 #[test]
@@ -69,9 +69,11 @@ fn impossible_picture_sizes_are_refused() {
 fn views_of_one_call_are_those_of_several() {
     on_device(|gpu, renderer| {
         let volume = blob_volume([20, 22, 18], spacing([1.0; 3]), VoxelType::U8);
-        let settings = Settings { shading: Shading::Phong, ..Settings::new(volume.full_window(), transfer(0.5)) };
+        let settings =
+            Settings { shading: Shading::Phong, ..Settings::new(volume.full_window(), transfer(0.5)) };
         let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
-        let prepared = renderer.prepare(gpu, &uploaded, CastParameters::new(&settings, &placement(&volume))).unwrap();
+        let prepared =
+            renderer.prepare(gpu, &uploaded, CastParameters::new(&settings, &placement(&volume))).unwrap();
         let mut views = Rig::Stereo { eye_distance_m: 0.1, convergence_m: 1.5 }.views(&outside());
         let size = [17, 30];
         views.push(look(DVec3::new(-1.0, 0.2, 0.3), DVec3::ZERO, orthographic(1.0, size), size));
@@ -97,7 +99,8 @@ fn volumes_and_settings_alternate_on_one_renderer() {
             for mode in [Mode::Composite, Mode::Mip] {
                 let settings = Settings { mode, ..Settings::new(volume.full_window(), transfer(0.5)) };
                 let parameters = CastParameters::new(&settings, &placement(volume));
-                let cpu = wheatstone_core::reference::Caster::new(volume).cast(&parameters, &[outside()]).remove(0);
+                let cpu =
+                    wheatstone_core::reference::Caster::new(volume).cast(&parameters, &[outside()]).remove(0);
                 shown.push((renderer.prepare(gpu, &uploaded, parameters).unwrap(), cpu));
             }
         }

@@ -58,16 +58,24 @@ impl Report {
         if !(dssim <= tolerance::dssim(case.format)) {
             self.failures.push(format!("{name}: DSSIM {dssim:.6}, largest difference {:.4}", found.max_abs));
         }
-        let slack = (tolerance::SAMPLES * cpu.samples as f64) as u64 + tolerance::SAMPLES_OF_TINY_PICTURE;
+        let slack = (tolerance::samples(case.format) * cpu.samples as f64) as u64 + tolerance::SAMPLES_OF_TINY_PICTURE;
         if cpu.samples.abs_diff(gpu.samples) > slack {
-            self.failures.push(format!("{name}: {} samples on the CPU, {} on the GPU", cpu.samples, gpu.samples));
+            self.failures
+                .push(format!("{name}: {} samples on the CPU, {} on the GPU", cpu.samples, gpu.samples));
         }
         let step_m = placement(volume).voxel_length_m() / f64::from(case.settings.sampling_factor);
         let is_other_hit = |&(a, b): &(f32, f32)| {
             a.is_finite() != b.is_finite()
                 || (a.is_finite() && f64::from((a - b).abs()) > tolerance::DEPTH_STEPS * step_m)
         };
-        let others = cpu.image.depth_m.iter().copied().zip(gpu.image.depth_m.iter().copied()).filter(is_other_hit).count();
+        let others = cpu
+            .image
+            .depth_m
+            .iter()
+            .copied()
+            .zip(gpu.image.depth_m.iter().copied())
+            .filter(is_other_hit)
+            .count();
         let pixels = cpu.image.depth_m.len();
         if others as f64 > tolerance::share_of_other_hits(case.format) * pixels as f64 {
             self.failures.push(format!("{name}: {others} of {pixels} pixels hit something else"));
@@ -149,7 +157,8 @@ fn modes_shadings_and_classifiers() {
         let transfer = transfer_2d();
         cases.push(case(format!("{mode:?} 2d"), Settings { mode, transfer, ..plain(&volume) }));
     }
-    let tetrahedron = Settings { gradient: GradientMethod::Tetrahedron, shading: Shading::Phong, ..plain(&volume) };
+    let tetrahedron =
+        Settings { gradient: GradientMethod::Tetrahedron, shading: Shading::Phong, ..plain(&volume) };
     let iso = Mode::Isosurface { isovalue: 0.3 };
     cases.push(case("tetrahedron 1d", tetrahedron.clone()));
     cases.push(case("tetrahedron 2d", Settings { transfer: transfer_2d(), ..tetrahedron.clone() }));
@@ -171,7 +180,10 @@ fn lights_steps_thresholds_and_windows() {
         case("iso under a light, red", Settings { light, surface_rgb: Some([0.9, 0.2, 0.1]), ..iso.clone() }),
         case("directional 0", Settings { shading: Shading::Directional { directions: 0 }, ..plain.clone() }),
         case("directional 1", Settings { shading: Shading::Directional { directions: 1 }, ..plain.clone() }),
-        case("directional 64", Settings { shading: Shading::Directional { directions: 64 }, ..plain.clone() }),
+        case(
+            "directional 64",
+            Settings { shading: Shading::Directional { directions: 64 }, ..plain.clone() },
+        ),
         case("f = 0.3", Settings { sampling_factor: 0.3, ..plain.clone() }),
         case("f = 2.7", Settings { sampling_factor: 2.7, ..phong.clone() }),
         case("iso f = 0.3", Settings { sampling_factor: 0.3, ..iso.clone() }),
@@ -180,7 +192,10 @@ fn lights_steps_thresholds_and_windows() {
         case("narrow window", Settings { window: Window::new(9000.0, 22_000.0).unwrap(), ..phong.clone() }),
         case("wide window", Settings { window: Window::new(-70_000.0, 90_000.0).unwrap(), ..phong }),
         case("opaque", Settings { transfer: transfer(1.0), ..plain.clone() }),
-        case("nothing visible", Settings { transfer: TransferFunction::ramp(2.0, 3.0).unwrap(), ..plain.clone() }),
+        case(
+            "nothing visible",
+            Settings { transfer: TransferFunction::ramp(2.0, 3.0).unwrap(), ..plain.clone() },
+        ),
         case("grey ramp", Settings { transfer: TransferFunction::ramp(0.1, 1.0).unwrap(), ..shadow }),
         case("iso above all", Settings { mode: Mode::Isosurface { isovalue: 1.5 }, ..plain.clone() }),
         case("iso below all", Settings { mode: Mode::Isosurface { isovalue: -0.5 }, ..plain }),
@@ -208,7 +223,9 @@ fn texel_formats_and_voxel_types() {
         for (voxel_type, formats) in pairs {
             let volume = blob_volume(DIMS, spacing([1.0; 3]), voxel_type);
             for format in formats.into_iter().filter(|&format| is_offered(format)) {
-                for (name, settings) in few_settings(&volume) {
+                // A driver compiles a kernel anew for each format: three kernels are enough here.
+                let kernels = ["composite phong", "iso phong", "mip"];
+                for (name, settings) in few_settings(&volume).into_iter().filter(|(name, _)| kernels.contains(name)) {
                     let name = format!("{name} {voxel_type} as {format:?}");
                     let report = if format == R8Unorm { &mut narrow } else { &mut wide };
                     report.run(gpu, renderer, &volume, &Case { name, format, settings, view: outside() });
@@ -227,8 +244,14 @@ fn projections_eyes_and_picture_sizes() {
     let middle = DVec3::ZERO;
     let eye = DVec3::new(-0.7, 0.5, 1.0);
     let views = [
-        ("inside", look(DVec3::new(0.05, 0.1, -0.1), DVec3::new(-0.5, -0.2, 0.6), perspective(1.5, odd), odd)),
-        ("inside along x", look(DVec3::new(0.1, 0.02, 0.03), DVec3::new(9.0, 0.02, 0.03), perspective(1.5, odd), odd)),
+        (
+            "inside",
+            look(DVec3::new(0.05, 0.1, -0.1), DVec3::new(-0.5, -0.2, 0.6), perspective(1.5, odd), odd),
+        ),
+        (
+            "inside along x",
+            look(DVec3::new(0.1, 0.02, 0.03), DVec3::new(9.0, 0.02, 0.03), perspective(1.5, odd), odd),
+        ),
         ("off axis", look(eye, middle, off_axis(0.9, odd, 0.35), odd)),
         ("along z", look(DVec3::Z * 1.5, middle, perspective(0.9, odd), odd)),
         ("parallel", look(eye, middle, orthographic(1.3, odd), odd)),
@@ -253,7 +276,8 @@ fn projections_eyes_and_picture_sizes() {
 #[test]
 fn clip_boxes_and_planes() {
     let volume = blobs_u16();
-    let plane = |x: f64, y: f64, z: f64, offset_m: f64| Some(ClipPlane { normal: DVec3::new(x, y, z), offset_m });
+    let plane =
+        |x: f64, y: f64, z: f64, offset_m: f64| Some(ClipPlane { normal: DVec3::new(x, y, z), offset_m });
     let (box_lo, box_hi) = (DVec3::new(0.2, 0.0, 0.31), DVec3::new(0.77, 0.6, 0.9));
     let clips = [
         ("box", Clip { box_lo, box_hi, plane: None }),
@@ -265,11 +289,15 @@ fn clip_boxes_and_planes() {
     ];
     let mut cases = Vec::new();
     let size = [53, 41];
-    let inside = look(DVec3::new(-0.05, -0.1, 0.05), DVec3::new(0.5, 0.3, -0.4), perspective(1.4, size), size);
+    let inside =
+        look(DVec3::new(-0.05, -0.1, 0.05), DVec3::new(0.5, 0.3, -0.4), perspective(1.4, size), size);
     for (clip_name, clip) in clips {
         for (name, settings) in few_settings(&volume) {
             let settings = Settings { clip, ..settings };
-            cases.push(Case { view: inside, ..case(format!("{name} {clip_name} from inside"), settings.clone()) });
+            cases.push(Case {
+                view: inside,
+                ..case(format!("{name} {clip_name} from inside"), settings.clone())
+            });
             cases.push(case(format!("{name} {clip_name}"), settings));
         }
     }
@@ -297,7 +325,10 @@ fn spacings_rotations_and_degenerate_sizes() {
             let settings = [
                 ("2d phong", Settings { transfer: transfer_2d(), shading: Shading::Phong, ..plain.clone() }),
                 ("ambient", Settings { shading: Shading::Ambient, ..plain.clone() }),
-                ("directional", Settings { shading: Shading::Directional { directions: 4 }, ..plain.clone() }),
+                (
+                    "directional",
+                    Settings { shading: Shading::Directional { directions: 4 }, ..plain.clone() },
+                ),
                 (
                     "tetrahedron iso",
                     Settings {
@@ -320,7 +351,9 @@ fn spacings_rotations_and_degenerate_sizes() {
 fn phantoms() {
     on_device(|gpu, renderer| {
         let mut report = Report::default();
-        for phantom in [Phantom::Sphere, Phantom::MarschnerLobb, Phantom::SheppLogan, Phantom::Ramp, Phantom::SolidBox] {
+        for phantom in
+            [Phantom::Sphere, Phantom::MarschnerLobb, Phantom::SheppLogan, Phantom::Ramp, Phantom::SolidBox]
+        {
             let volume = phantom.cube(32).unwrap();
             for (name, settings) in few_settings(&volume) {
                 let format = TexelFormat::choose(

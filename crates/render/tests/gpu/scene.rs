@@ -5,8 +5,10 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::{Cast, Caster};
 use wheatstone_core::scene::{Placement, Settings};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
-use wheatstone_core::view::{AnatomicalDirection, Frustum, OrthographicBox, Projection, View, world_from_patient};
-use wheatstone_core::volume::{Grid, StorageKind, Volume, Voxels, VoxelType};
+use wheatstone_core::view::{
+    AnatomicalDirection, Frustum, OrthographicBox, Projection, View, world_from_patient,
+};
+use wheatstone_core::volume::{Grid, StorageKind, Volume, VoxelType, Voxels};
 use wheatstone_render::{Gpu, GpuError, GpuVolume, Renderer, TexelFormat};
 
 /// The precision that a texel format holds.
@@ -23,7 +25,9 @@ fn blobs(p: DVec3) -> f64 {
     let ball = |x: f64, y: f64, z: f64, width: f64| {
         (-(p - DVec3::new(x, y, z)).length_squared() / (width * width)).exp()
     };
-    let balls = ball(0.35, 0.4, 0.3, 0.17).max(0.7 * ball(0.7, 0.3, 0.55, 0.22)).max(0.45 * ball(0.5, 0.75, 0.7, 0.2));
+    let balls = ball(0.35, 0.4, 0.3, 0.17)
+        .max(0.7 * ball(0.7, 0.3, 0.55, 0.22))
+        .max(0.45 * ball(0.5, 0.75, 0.7, 0.2));
     let haze = 0.08 * (1.0 + (9.0 * p.x).sin() * (7.0 * p.y).cos() * (8.0 * p.z).sin());
     (balls + haze).clamp(0.0, 1.0)
 }
@@ -54,7 +58,10 @@ pub(crate) fn spacing(spacing_mm: [f64; 3]) -> DAffine3 {
 pub(crate) fn oblique(spacing_mm: [f64; 3]) -> DAffine3 {
     let turn = DMat3::from_quat(DQuat::from_euler(EulerRot::XYZ, 0.3, -0.7, 1.9));
     let [x, y, z] = spacing_mm;
-    DAffine3::from_mat3_translation(turn * DMat3::from_diagonal(DVec3::new(x, -y, z)), DVec3::new(40.0, -7.0, 9.0))
+    DAffine3::from_mat3_translation(
+        turn * DMat3::from_diagonal(DVec3::new(x, -y, z)),
+        DVec3::new(40.0, -7.0, 9.0),
+    )
 }
 
 /// Blue to yellow, with opacity from a tenth of the range upwards.
@@ -95,7 +102,8 @@ pub(crate) fn orthographic(height_m: f64, size: [u32; 2]) -> Projection {
 pub(crate) fn look(eye: DVec3, at: DVec3, projection: Projection, size: [u32; 2]) -> View {
     let back = (eye - at).normalize_or_zero();
     let right = DVec3::Y.cross(back).normalize_or_zero();
-    let world_from_view = DAffine3::from_mat3_translation(DMat3::from_cols(right, back.cross(right), back), eye);
+    let world_from_view =
+        DAffine3::from_mat3_translation(DMat3::from_cols(right, back.cross(right), back), eye);
     View { view_from_world: world_from_view.inverse(), projection, size }
 }
 
@@ -106,7 +114,12 @@ pub(crate) fn outside() -> View {
 }
 
 /// The picture of the reference at the precision that a texel format holds.
-pub(crate) fn cast_on_cpu(volume: &Volume, format: TexelFormat, parameters: &CastParameters, views: &[View]) -> Vec<Cast> {
+pub(crate) fn cast_on_cpu(
+    volume: &Volume,
+    format: TexelFormat,
+    parameters: &CastParameters,
+    views: &[View],
+) -> Vec<Cast> {
     Caster::with_storage(volume, storage_kind(format)).cast(parameters, views)
 }
 

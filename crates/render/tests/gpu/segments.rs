@@ -23,7 +23,7 @@ fn view() -> View {
     look(DVec3::new(1.5, 0.0, 0.0), DVec3::ZERO, orthographic(0.8, size), size)
 }
 
-/// A mode or shading, and the loop iterations that a sample costs with it.
+/// A mode or shading, and the least loop iterations that a sample can cost with it.
 fn cases(volume: &Volume) -> Vec<(String, Settings, f32)> {
     // Never opaque, so that rays reach their last segment.
     let plain = Settings { early_termination: None, ..Settings::new(volume.full_window(), transfer(0.15)) };
@@ -36,9 +36,10 @@ fn cases(volume: &Volume) -> Vec<(String, Settings, f32)> {
         [(Shading::Shadow, 25.0), (Shading::Ambient, 15.0), (Shading::Directional { directions: 64 }, 65.0)];
     for (shading, cost) in shadings {
         cases.push((format!("composite {shading:?}"), Settings { shading, ..plain.clone() }, cost));
-        // A surface near the far end, where the first segments find nothing.
-        let mode = Mode::Isosurface { isovalue: 0.3 };
-        cases.push((format!("iso {shading:?}"), Settings { mode, shading, ..plain.clone() }, cost));
+    }
+    for isovalue in [0.3, 0.8] {
+        let settings = Settings { mode: Mode::Isosurface { isovalue }, shading: Shading::Phong, ..plain.clone() };
+        cases.push((format!("iso {isovalue}"), settings, 1.0));
     }
     cases
 }
@@ -50,30 +51,37 @@ fn rays_in_segments_are_whole_rays() {
         let mut failures = Vec::new();
         let mut worst = (0.0, String::new());
         for (name, settings, cost) in cases(&volume) {
-            // Two and a half segments over the 16 voxels of a ray.
+            // At least two and a half segments over the 16 voxels of a ray.
             let sampling_factor = 2.5 * ITERATION_LIMIT / cost / 16.0;
             let settings = Settings { sampling_factor, ..settings };
             let parameters = CastParameters::new(&settings, &placement(&volume));
             let views = [view()];
             let cpu = cast_on_cpu(&volume, TexelFormat::R16Unorm, &parameters, &views).remove(0);
-            let found = cast_on_gpu(gpu, renderer, &volume, TexelFormat::R16Unorm, &settings, &views).unwrap().remove(0);
+            let found = cast_on_gpu(gpu, renderer, &volume, TexelFormat::R16Unorm, &settings, &views)
+                .unwrap()
+                .remove(0);
             let difference = largest_difference(&cpu, &found);
             if difference > worst.0 {
                 worst = (difference, name.clone());
             }
-            if difference > tolerance::MANY_SAMPLES {
+            let is_composite = settings.mode == Mode::Composite;
+            if difference > if is_composite { tolerance::MANY_SAMPLES } else { tolerance::PROJECTIONS } {
                 failures.push(format!("{name}: largest difference {difference}"));
             }
-            if cpu.samples.abs_diff(found.samples) as f64 > tolerance::SAMPLES * cpu.samples as f64 {
-                failures.push(format!("{name}: {} samples on the CPU, {} on the GPU", cpu.samples, found.samples));
+            // A driver that stops a loop in silence takes fewer.
+            if cpu.samples.abs_diff(found.samples) as f64 > 1e-4 * cpu.samples as f64 {
+                failures.push(format!(
+                    "{name}: {} samples on the CPU, {} on the GPU",
+                    cpu.samples, found.samples
+                ));
             }
-            let step_m = placement(&volume).voxel_length_m() / f64::from(sampling_factor);
+            // The depth of a composite is where a slowly growing opacity passes a threshold, and extremes recur; surfaces
+            // are sharp.
+            let tenth_of_a_voxel_m = 0.1 * placement(&volume).voxel_length_m();
             let depths = cpu.image.depth_m.iter().zip(&found.image.depth_m);
-            // Many equal extremes: their depth is any of them.
-            let is_unique = !matches!(settings.mode, Mode::Mip | Mode::MinIp);
-            for (a, b) in depths.filter(|_| is_unique) {
-                let same = a == b || f64::from((a - b).abs()) < 20.0 * step_m;
-                if !same {
+            let is_sharp = matches!(settings.mode, Mode::Isosurface { .. });
+            for (a, b) in depths.filter(|_| is_sharp) {
+                if a != b && f64::from((a - b).abs()) > tenth_of_a_voxel_m {
                     failures.push(format!("{name}: depth {a} on the CPU, {b} on the GPU"));
                 }
             }
@@ -91,7 +99,8 @@ fn rows_in_pieces_are_whole_pictures() {
     let size = [8, 9001];
     let view = look(DVec3::new(0.6, 0.4, 1.2), DVec3::ZERO, off_axis(1.2, size, 0.0), size);
     on_device(|gpu, shared| {
-        let settings = Settings { shading: Shading::Phong, ..Settings::new(volume.full_window(), transfer(0.6)) };
+        let settings =
+            Settings { shading: Shading::Phong, ..Settings::new(volume.full_window(), transfer(0.6)) };
         let parameters = CastParameters::new(&settings, &placement(&volume));
         let uploaded = GpuVolume::upload_as(gpu, &volume, TexelFormat::R16Unorm, &mut |_, _| {}).unwrap();
         let mut fresh = Renderer::new(gpu).unwrap();

@@ -16,8 +16,10 @@ pub(crate) fn dssim(format: TexelFormat) -> f64 {
 }
 
 /// Relative difference of the samples taken. Rounding can put a ray's length on the other side of a whole number and stop
-/// an early-terminated ray one sample sooner or later.
-pub(crate) const SAMPLES: f64 = 0.001;
+/// an early-terminated ray one sample sooner or later; 8-bit filtering moves every surface a little.
+pub(crate) fn samples(format: TexelFormat) -> f64 {
+    if format == TexelFormat::R8Unorm { 0.003 } else { 0.001 }
+}
 
 /// Samples by which even a tiny picture may differ: one for each of a few rays.
 pub(crate) const SAMPLES_OF_TINY_PICTURE: u64 = 3;
@@ -34,6 +36,9 @@ pub(crate) const DEPTH_STEPS: f64 = 1.05;
 /// Difference of channels of one cast in one go and in pieces: the state between pieces is kept in full.
 pub(crate) const PIECES: f64 = 1e-6;
 
-/// Difference of channels over tens of thousands of samples per ray: each step's rounding, at most 2⁻²⁴ of what is
-/// gathered, adds up in one direction at worst.
-pub(crate) const MANY_SAMPLES: f64 = 0.004;
+/// Difference of channels of composites over tens of thousands of samples per ray: the transmittance of a step is off by
+/// up to 2⁻²⁴, which over 150,000 steps adds up to 0.009 at worst.
+pub(crate) const MANY_SAMPLES: f64 = 0.009;
+
+/// Difference of channels of projections, whose sums and extremes do not lose what small steps do.
+pub(crate) const PROJECTIONS: f64 = 0.001;

@@ -33,9 +33,10 @@ fn slabs_join_without_a_seam_and_progress_reaches_the_end() {
     on_device(|gpu, renderer| {
         let volume = slices();
         let mut steps = Vec::new();
-        let uploaded =
-            GpuVolume::upload_as(gpu, &volume, TexelFormat::R16Unorm, &mut |done, total| steps.push((done, total)))
-                .unwrap();
+        let uploaded = GpuVolume::upload_as(gpu, &volume, TexelFormat::R16Unorm, &mut |done, total| {
+            steps.push((done, total))
+        })
+        .unwrap();
         assert!(steps.len() >= 2, "one slab shows no seam: {steps:?}");
         assert!(steps.iter().all(|&(_, total)| total == DIMS[2]), "{steps:?}");
         assert!(steps.windows(2).all(|pair| pair[0].0 < pair[1].0), "{steps:?}");
@@ -46,9 +47,9 @@ fn slabs_join_without_a_seam_and_progress_reaches_the_end() {
         let size = [3, DIMS[2] as u32];
         let view = look(DVec3::Z, DVec3::ZERO, orthographic(110.0 / 300.0, size), size);
         let window = wheatstone_core::volume::Window::new(0.0, 65_535.0).unwrap();
-        let settings =
-            Settings { mode: Mode::Mean, sampling_factor: 0.1, ..Settings::new(window, grey()) };
-        let prepared = renderer.prepare(gpu, &uploaded, CastParameters::new(&settings, &placement(&volume))).unwrap();
+        let settings = Settings { mode: Mode::Mean, sampling_factor: 0.1, ..Settings::new(window, grey()) };
+        let prepared =
+            renderer.prepare(gpu, &uploaded, CastParameters::new(&settings, &placement(&volume))).unwrap();
         let image = renderer.render_to_host(gpu, &prepared, &[view]).unwrap().remove(0).image;
         for z in 0..DIMS[2] {
             // The patient's head is up: the last slice is the first row.
@@ -92,7 +93,8 @@ fn every_format_takes_rows_of_any_length() {
                 let settings = Settings { mode: Mode::XRay, ..Settings::new(volume.full_window(), grey()) };
                 let parameters = CastParameters::new(&settings, &placement(&volume));
                 let cpu = cast_on_cpu(&volume, format, &parameters, &[view]).remove(0);
-                let found = cast_on_gpu(gpu, renderer, &volume, format, &settings, &[view]).unwrap().remove(0);
+                let found =
+                    cast_on_gpu(gpu, renderer, &volume, format, &settings, &[view]).unwrap().remove(0);
                 // 8-bit filtering is off by up to 0.004 per sample, the table by half an entry.
                 let difference = largest_difference(&cpu, &found);
                 assert!(difference < 0.006, "{dims:?} {format:?}: {difference}");
