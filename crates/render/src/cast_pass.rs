@@ -144,9 +144,13 @@ impl CastPass {
             device,
             "volume",
             &[
-                sampled_texture(wgpu::TextureViewDimension::D3, true),
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                    view_dimension: wgpu::TextureViewDimension::D3,
+                    multisampled: false,
+                },
                 wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                sampled_texture(wgpu::TextureViewDimension::D2, false),
+                storage_buffer(true, 16),
             ],
         );
         let target_layout = bind_group_layout(
@@ -155,7 +159,7 @@ impl CastPass {
             &[
                 storage_texture(wgpu::TextureFormat::Rgba32Float),
                 storage_texture(wgpu::TextureFormat::Rg32Float),
-                storage_buffer(RAY_STATE_BYTES),
+                storage_buffer(false, RAY_STATE_BYTES),
             ],
         );
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -255,16 +259,8 @@ fn uniform<T>() -> wgpu::BindingType {
     buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
 }
 
-fn storage_buffer(smallest: u64) -> wgpu::BindingType {
-    buffer(wgpu::BufferBindingType::Storage { read_only: false }, smallest)
-}
-
-fn sampled_texture(view_dimension: wgpu::TextureViewDimension, filterable: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable },
-        view_dimension,
-        multisampled: false,
-    }
+fn storage_buffer(read_only: bool, smallest: u64) -> wgpu::BindingType {
+    buffer(wgpu::BufferBindingType::Storage { read_only }, smallest)
 }
 
 fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {
