@@ -58,7 +58,8 @@ impl Report {
         if !(dssim <= tolerance::dssim(case.format)) {
             self.failures.push(format!("{name}: DSSIM {dssim:.6}, largest difference {:.4}", found.max_abs));
         }
-        let slack = (tolerance::samples(case.format) * cpu.samples as f64) as u64 + tolerance::SAMPLES_OF_TINY_PICTURE;
+        let slack = (tolerance::samples(case.format) * cpu.samples as f64) as u64
+            + tolerance::SAMPLES_OF_TINY_PICTURE;
         if cpu.samples.abs_diff(gpu.samples) > slack {
             self.failures
                 .push(format!("{name}: {} samples on the CPU, {} on the GPU", cpu.samples, gpu.samples));
@@ -225,7 +226,9 @@ fn texel_formats_and_voxel_types() {
             for format in formats.into_iter().filter(|&format| is_offered(format)) {
                 // A driver compiles a kernel anew for each format: three kernels are enough here.
                 let kernels = ["composite phong", "iso phong", "mip"];
-                for (name, settings) in few_settings(&volume).into_iter().filter(|(name, _)| kernels.contains(name)) {
+                for (name, settings) in
+                    few_settings(&volume).into_iter().filter(|(name, _)| kernels.contains(name))
+                {
                     let name = format!("{name} {voxel_type} as {format:?}");
                     let report = if format == R8Unorm { &mut narrow } else { &mut wide };
                     report.run(gpu, renderer, &volume, &Case { name, format, settings, view: outside() });

@@ -38,7 +38,8 @@ fn cases(volume: &Volume) -> Vec<(String, Settings, f32)> {
         cases.push((format!("composite {shading:?}"), Settings { shading, ..plain.clone() }, cost));
     }
     for isovalue in [0.3, 0.8] {
-        let settings = Settings { mode: Mode::Isosurface { isovalue }, shading: Shading::Phong, ..plain.clone() };
+        let settings =
+            Settings { mode: Mode::Isosurface { isovalue }, shading: Shading::Phong, ..plain.clone() };
         cases.push((format!("iso {isovalue}"), settings, 1.0));
     }
     cases
