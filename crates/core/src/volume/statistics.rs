@@ -3,7 +3,7 @@
 use super::{Volume, Window};
 use rayon::prelude::*;
 
-/// Percentiles are taken from at most this many voxels, evenly strided.
+/// Percentiles are taken from at most this many voxels, one from each of as many equal runs.
 const SAMPLE_LIMIT: usize = 1 << 20;
 
 /// Counts of normalised values in equal bins over a window.
@@ -24,9 +24,12 @@ pub struct Statistics {
 impl Statistics {
     pub(super) fn of(volume: &Volume) -> Self {
         let voxels = volume.voxels();
-        let stride = voxels.len().div_ceil(SAMPLE_LIMIT);
-        let mut sorted_sample: Vec<f64> =
-            (0..voxels.len()).into_par_iter().step_by(stride).map(|i| voxels.value(i)).collect();
+        let run = voxels.len().div_ceil(SAMPLE_LIMIT);
+        let mut sorted_sample: Vec<f64> = (0..voxels.len())
+            .into_par_iter()
+            .step_by(run)
+            .map(|start| voxels.value(start + scattered(start, run.min(voxels.len() - start))))
+            .collect();
         sorted_sample.par_sort_unstable_by(f64::total_cmp);
         let mean = sorted_sample.iter().sum::<f64>() / sorted_sample.len() as f64;
         Self { sorted_sample, range: volume.range(), mean }
@@ -58,7 +61,7 @@ impl Statistics {
             .unwrap_or_else(|_| Window::spanning(self.range.0, self.range.1))
     }
 
-    /// Histogram of the normalised values (of the strided sample, at most about a million voxels).
+    /// Histogram of the normalised values (of the sample, at most about a million voxels).
     pub fn histogram(&self, window: Window, bins: usize) -> Histogram {
         let mut counts = vec![0_u64; bins.max(1)];
         let last = counts.len() - 1;
@@ -70,8 +73,18 @@ impl Statistics {
     }
 }
 
+/// A place within a run of voxels that follows no pattern (SplitMix64), the same every time. The first of each run
+/// would not do: where the length of a row divides that of a run, all of them lie in one plane.
+fn scattered(start: usize, run: usize) -> usize {
+    let mut hash = (start as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    hash = (hash ^ (hash >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    hash = (hash ^ (hash >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((hash ^ (hash >> 31)) % run as u64) as usize
+}
+
 #[cfg(test)]
 mod tests {
+    use super::SAMPLE_LIMIT;
     use crate::volume::{Grid, Volume, Voxels};
 
     fn volume(values: Vec<f32>) -> Volume {
@@ -102,6 +115,25 @@ mod tests {
         assert_eq!(volume.range(), (2.0, 4.0));
         assert_eq!(volume.non_finite_count(), 3);
         assert_eq!(volume.voxels(), &Voxels::F32(vec![2.0, 2.0, 2.0, 4.0, 2.0]));
+    }
+
+    #[test]
+    fn the_sample_of_a_large_volume_is_of_every_plane() {
+        let dims = [8, 1024, SAMPLE_LIMIT / 1024];
+        let grid = Grid::centred(dims, [1.0; 3]).unwrap();
+        let count = grid.voxel_count();
+        for axis in 0..3 {
+            let place = |i: usize| [i % 8, i / 8 % 1024, i / (8 * 1024)][axis];
+            let voxels = Voxels::U16((0..count).map(|i| place(i) as u16).collect());
+            let statistics = Volume::new(grid.clone(), voxels).unwrap().statistics();
+            let last = (dims[axis] - 1) as f64;
+            assert!(
+                (statistics.mean() - 0.5 * last).abs() < 0.01 * last,
+                "axis {axis}: {}",
+                statistics.mean()
+            );
+            assert!((statistics.percentile(90.0) - 0.9 * last).abs() < 0.1 * last.max(10.0), "axis {axis}");
+        }
     }
 
     #[test]
