@@ -8,6 +8,7 @@ use crate::{
     stream::{Compression, MAX_HEADER_BYTES, Stream},
     text_header,
     voxel_data::{self, Layout, Scalar},
+    warning::LPS_AXES,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
@@ -138,7 +139,7 @@ impl Fields {
                 return Err(ReadError::NotFinite { field });
             }
         } else if origin.is_none() {
-            warnings.push(Warning::OrientationUnknown);
+            warnings.push(Warning::OrientationUnknown { axes: LPS_AXES });
         }
         let translation = origin.map_or(DVec3::ZERO, |(_, origin)| origin);
         let linear = direction * DMat3::from_diagonal(spacing);

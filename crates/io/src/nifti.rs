@@ -8,6 +8,7 @@ use crate::{
     siblings::Siblings,
     stream::Stream,
     voxel_data::{self, Layout, Scalar},
+    warning::RAS_AXES,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use wheatstone_core::volume::VoxelType;
@@ -229,7 +230,7 @@ impl Header {
                 "quatern_b, quatern_c, quatern_d",
             );
         }
-        warnings.push(Warning::OrientationUnknown);
+        warnings.push(Warning::OrientationUnknown { axes: RAS_AXES });
         (to_mm * geometry::diagonal(spacing), "pixdim")
     }
 

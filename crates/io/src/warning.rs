@@ -2,6 +2,11 @@
 
 use thiserror::Error;
 
+/// What the axes of a file without an orientation are taken as, where its format's own positions are RAS.
+pub(crate) const RAS_AXES: &str = "right, anterior, superior";
+/// The same where they are LPS.
+pub(crate) const LPS_AXES: &str = "left, posterior, superior";
+
 /// Something about a file that its reader coped with but that the user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -37,8 +42,11 @@ pub enum Warning {
         format: crate::Format,
     },
     /// The file does not say how the patient lies.
-    #[error("the file gives no orientation: its axes are taken as right, anterior, superior")]
-    OrientationUnknown,
+    #[error("the file gives no orientation: its axes are taken as {axes}")]
+    OrientationUnknown {
+        /// The directions that the axes are taken to point to.
+        axes: &'static str,
+    },
     /// The named space is not an anatomical one.
     #[error("space `{space}` is not anatomical: its axes are taken as right, anterior, superior")]
     SpaceAssumedRas {

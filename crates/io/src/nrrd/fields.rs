@@ -5,6 +5,7 @@ use crate::{
     ReadError, Warning, geometry,
     stream::{MAX_HEADER_BYTES, Stream},
     text_header,
+    warning::RAS_AXES,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
@@ -124,7 +125,7 @@ impl Fields {
         warnings: &mut Vec<Warning>,
     ) -> Result<(DAffine3, &'static str), ReadError> {
         let field = "spacings";
-        warnings.push(Warning::OrientationUnknown);
+        warnings.push(Warning::OrientationUnknown { axes: RAS_AXES });
         let units = self.optional("units").map(quoted).unwrap_or_default();
         let mut spacing_mm = DVec3::ONE;
         if let Some(text) = self.optional(field) {
@@ -159,7 +160,7 @@ impl Fields {
 
     fn flip_to_ras(&self, warnings: &mut Vec<Warning>) -> Result<DVec3, ReadError> {
         let Some(space) = self.optional("space") else {
-            warnings.push(Warning::OrientationUnknown);
+            warnings.push(Warning::OrientationUnknown { axes: RAS_AXES });
             return Ok(DVec3::ONE);
         };
         let name = space.trim().to_ascii_lowercase();

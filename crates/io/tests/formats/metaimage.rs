@@ -93,9 +93,10 @@ fn images_of_two_dimensions_get_a_third() {
     let expected = [
         Warning::SpacingAssumed { axis: 1 },
         Warning::SpacingAssumed { axis: 2 },
-        Warning::OrientationUnknown,
+        Warning::OrientationUnknown { axes: "left, posterior, superior" },
     ];
     assert_eq!(loaded.warnings, expected);
+    assert_eq!(loaded.volume.grid().orientation_letters(), "LPS", "what the warning says");
 }
 
 #[test]

@@ -105,7 +105,13 @@ fn without_a_form_the_spacing_counts_and_the_user_is_told() {
     header.pixdim = [1.0, 0.5, -2.0, 0.0, 1.0, 1.0, 1.0, 1.0];
     let loaded = load(NIFTI, &header.file(&bytes()));
     assert_eq!(loaded.volume.grid().spacing_mm(), DVec3::new(0.5, 2.0, 1.0));
-    assert_eq!(loaded.warnings, [Warning::SpacingAssumed { axis: 3 }, Warning::OrientationUnknown]);
+    assert_eq!(
+        loaded.warnings,
+        [
+            Warning::SpacingAssumed { axis: 3 },
+            Warning::OrientationUnknown { axes: "right, anterior, superior" }
+        ]
+    );
 }
 
 #[test]

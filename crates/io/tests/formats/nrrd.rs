@@ -105,7 +105,7 @@ fn kinds_tell_components_where_there_are_no_directions() {
     assert_eq!(values_of(&loaded), counted());
     assert_eq!(loaded.volume.grid().spacing_mm(), DVec3::new(2.0, 3.0, 1.0));
     let expected = [
-        Warning::OrientationUnknown,
+        Warning::OrientationUnknown { axes: "right, anterior, superior" },
         Warning::SpacingAssumed { axis: 4 },
         Warning::FirstComponentOnly { components: 3 },
     ];
@@ -134,7 +134,10 @@ fn a_space_without_anatomy_is_told() {
     let space = "3d-right-handed".to_owned();
     assert_eq!(load(NRRD, &plain(fields)).warnings, [Warning::SpaceAssumedRas { space }]);
     let fields = "space dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n";
-    assert_eq!(load(NRRD, &plain(fields)).warnings, [Warning::OrientationUnknown]);
+    assert_eq!(
+        load(NRRD, &plain(fields)).warnings,
+        [Warning::OrientationUnknown { axes: "right, anterior, superior" }]
+    );
 }
 
 #[test]
