@@ -18,9 +18,6 @@ pub(crate) const STEP_DSSIM: f64 = 0.01;
 /// Channel difference that early termination may make: what is left behind the threshold of 0.99, and rounding.
 pub(crate) const EARLY_TERMINATION: f64 = 0.011;
 
-/// Channel difference of pictures that differ only in the order of f32 operations.
-pub(crate) const ROUNDING: f64 = 1e-4;
-
 /// Colour of a lit sample by the Phong formula: rounding of the gradient, raised to the power of 20.
 pub(crate) const LIT_COLOR: f64 = 1e-3;
 

@@ -34,7 +34,7 @@ fn slabs_join_without_a_seam_and_progress_reaches_the_end() {
         let volume = slices();
         let mut steps = Vec::new();
         let uploaded = GpuVolume::upload_as(gpu, &volume, TexelFormat::R16Unorm, &mut |done, total| {
-            steps.push((done, total))
+            steps.push((done, total));
         })
         .unwrap();
         assert!(steps.len() >= 2, "one slab shows no seam: {steps:?}");
