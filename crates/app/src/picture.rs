@@ -41,6 +41,10 @@ pub(crate) fn write_png(path: &Path, picture: &RgbImage, bits: Bits) -> Result<(
 /// Reads a PNG file of 8 or 16 bits, grey or colour; transparency is put over black.
 pub(crate) fn read_png(path: &Path) -> Result<RgbImage, Failure> {
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
+    // Opening a pipe may block, so what the path names is looked at first.
+    if !std::fs::metadata(path).map_err(|error| bad(&error))?.is_file() {
+        return Err(bad(&"not a file"));
+    }
     let mut reader = image::ImageReader::open(path).map_err(|error| bad(&error))?;
     reader.set_format(image::ImageFormat::Png);
     let decoded = reader.decode().map_err(|error| bad(&error))?;

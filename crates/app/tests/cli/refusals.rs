@@ -130,3 +130,14 @@ fn pictures_of_different_sizes_are_not_compared() {
     assert_eq!(run.code, 2);
     assert!(run.stderr.contains("32×24") && run.stderr.contains("8×8"), "{}", run.stderr);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_no_picture_and_is_not_waited_for() {
+    let bench = Bench::new();
+    let made = std::process::Command::new("mkfifo").arg(bench.path("pipe.png")).status().unwrap();
+    assert!(made.success());
+    let run = bench.run(&["compare", "pipe.png", "pipe.png"]);
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(run.stderr.starts_with("error: pipe.png: not a file"), "{}", run.stderr);
+}
