@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 has_adapter() {
-    cargo run --quiet -- doctor --json 2>/dev/null | grep -q '"is_software"'
+    cargo run --quiet -- doctor --json 2>/dev/null | grep '"is_software"' >/dev/null
 }
 
 install_software_vulkan() {

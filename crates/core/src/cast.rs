@@ -8,6 +8,9 @@ use glam::{DAffine3, DVec3, Mat3, Vec3, Vec3A, Vec4};
 /// Ambient, diffuse and specular weights and the specular exponent of Phong shading.
 pub const PHONG: [f32; 4] = [0.2, 0.7, 0.2, 20.0];
 
+/// Squared gradient below which a sample has no surface to light.
+pub const FLAT_SQUARED: f32 = 1e-10;
+
 /// Samples that a shadow ray takes.
 pub const SHADOW_SAMPLES: u32 = 24;
 
@@ -17,11 +20,20 @@ pub const SHADING_STEP: f32 = 2.0;
 /// Steps per direction of directional shading.
 pub const DIRECTIONAL_STEPS: u32 = 4;
 
+/// Points of the sphere that ambient occlusion samples: the axes and the corners of a cube.
+pub const AMBIENT_SAMPLES: u32 = 14;
+
 /// Radius of the sphere that ambient occlusion samples, voxel lengths.
 pub const AMBIENT_RADIUS: f32 = 4.0;
 
 /// Accumulated opacity at which a composited ray has hit something: the first that an 8-bit picture shows.
 pub const FIRST_HIT_ALPHA: f32 = 1.0 / 255.0;
+
+/// Halvings of the step in which an isosurface is found: to a thousandth of a voxel length.
+pub const BISECTIONS: u32 = 10;
+
+/// How far above an isosurface its shading rays start, voxel lengths.
+pub const SURFACE_LIFT: f32 = 0.5;
 
 /// Colour of an isosurface whose transfer function gives it none.
 pub const SURFACE_RGB: [f32; 3] = [0.8; 3];

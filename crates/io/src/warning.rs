@@ -29,8 +29,8 @@ pub enum Warning {
         /// Name of the type in the file.
         from: &'static str,
     },
-    /// Voxels that were NaN or infinite hold the smallest finite value now.
-    #[error("{count} voxels are NaN or infinite: they were given the smallest finite value")]
+    /// Voxels that are NaN or infinite.
+    #[error("{count} voxels are NaN or infinite: they count as the window's low end")]
     NonFiniteVoxels {
         /// How many.
         count: usize,

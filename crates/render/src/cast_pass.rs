@@ -6,7 +6,7 @@ use crate::target::Target;
 use crate::uniforms::{CastUniform, ViewUniform};
 use std::collections::HashMap;
 use std::num::NonZeroU64;
-use wheatstone_core::cast::{CastParameters, Classifier, SHADOW_SAMPLES};
+use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, DIRECTIONAL_STEPS, SHADOW_SAMPLES};
 use wheatstone_core::scene::{GradientMethod, Mode, Shading};
 
 /// Side of a workgroup, pixels; `@workgroup_size` of `cast.wgsl`.
@@ -121,9 +121,27 @@ pub(crate) fn iterations_per_sample(parameters: &CastParameters) -> u32 {
         + match parameters.shading {
             Shading::None | Shading::Phong => 0,
             Shading::Shadow => SHADOW_SAMPLES + 1,
-            Shading::Ambient => 14 + 1,
+            Shading::Ambient => AMBIENT_SAMPLES + 1,
             Shading::Directional { .. } => parameters.directions.len() as u32 + 1,
         }
+}
+
+/// Reads of the volume that a visible sample costs at most.
+pub(crate) fn reads_per_sample(parameters: &CastParameters) -> u32 {
+    let gradient_reads = match parameters.gradient {
+        GradientMethod::CentralDifferences => 6,
+        GradientMethod::Tetrahedron => 4,
+    };
+    let classifier_reads =
+        if parameters.classifier == Classifier::ValueGradient { gradient_reads } else { 0 };
+    let shading_samples = match parameters.shading {
+        Shading::None => 0,
+        Shading::Phong => gradient_reads,
+        Shading::Shadow => SHADOW_SAMPLES,
+        Shading::Ambient => AMBIENT_SAMPLES,
+        Shading::Directional { .. } => DIRECTIONAL_STEPS * parameters.directions.len() as u32,
+    };
+    1 + classifier_reads + shading_samples * (1 + classifier_reads)
 }
 
 /// Layouts of the cast pass and the pipelines built so far.
@@ -318,6 +336,39 @@ mod tests {
         }
         if let Some(error) = pollster::block_on(scope.pop()) {
             panic!("{error}");
+        }
+    }
+
+    #[test]
+    fn constants_are_those_of_the_reference() {
+        use wheatstone_core::cast;
+        use wheatstone_core::transfer::OPAQUE_LOG2;
+        let expected = [
+            ("lib/shade_phong", "AMBIENT", cast::PHONG[0]),
+            ("lib/shade_phong", "DIFFUSE", cast::PHONG[1]),
+            ("lib/shade_phong", "SPECULAR", cast::PHONG[2]),
+            ("lib/shade_phong", "SPECULAR_EXPONENT", cast::PHONG[3]),
+            ("lib/shade_phong", "FLAT_SQUARED", cast::FLAT_SQUARED),
+            ("lib/shade_shadow", "SHADOW_SAMPLES", SHADOW_SAMPLES as f32),
+            ("lib/shade_shadow", "SHADING_STEP", cast::SHADING_STEP),
+            ("lib/shade_ambient", "AMBIENT_RADIUS", cast::AMBIENT_RADIUS),
+            ("lib/accumulate_composite", "FIRST_HIT_ALPHA", cast::FIRST_HIT_ALPHA),
+            ("lib/accumulate_first_hit", "BISECTIONS", cast::BISECTIONS as f32),
+            ("lib/accumulate_first_hit", "SURFACE_LIFT", cast::SURFACE_LIFT),
+            ("lib/classify_isovalue", "OPAQUE_LOG2", OPAQUE_LOG2),
+        ];
+        for (file, name, value) in expected {
+            let has_file = |variant: &Variant| variant.choices().iter().any(|(_, chosen)| *chosen == file);
+            let choices = Variant::all().into_iter().find(has_file).expect(file).choices();
+            let module = naga::front::wgsl::parse_str(&compose("cast", &choices).unwrap().text).unwrap();
+            let (_, constant) =
+                module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name)).expect(name);
+            let found = match module.global_expressions[constant.init] {
+                naga::Expression::Literal(naga::Literal::F32(x)) => x,
+                naga::Expression::Literal(naga::Literal::U32(x)) => x as f32,
+                ref other => panic!("{name}: {other:?}"),
+            };
+            assert_eq!(found, value, "{name} in {file}");
         }
     }
 }

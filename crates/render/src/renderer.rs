@@ -2,7 +2,7 @@
 
 use crate::cast_pass::{self, Bindings, CastPass, RAY_STATE_BYTES, Variant};
 use crate::gpu::{Gpu, GpuError};
-use crate::pacer::{Pacer, sample_limit};
+use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit};
 use crate::target::Target;
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
@@ -32,7 +32,6 @@ pub struct Prepared {
     view_uniform: wgpu::Buffer,
     frame: wgpu::BindGroup,
     volume: wgpu::BindGroup,
-    sample_limit: u32,
 }
 
 impl Renderer {
@@ -97,9 +96,7 @@ impl Renderer {
             ],
         );
         gpu.check()?;
-        let sample_limit =
-            sample_limit(parameters.most_samples_per_ray(), cast_pass::iterations_per_sample(&parameters));
-        Ok(Prepared { parameters, pipeline, view_uniform, frame, volume, sample_limit })
+        Ok(Prepared { parameters, pipeline, view_uniform, frame, volume })
     }
 
     /// Casts each view into its target and waits until all are done.
@@ -140,17 +137,19 @@ impl Renderer {
         targets.iter().map(|target| target.read(gpu)).collect()
     }
 
-    /// Casts one view piece by piece.
+    /// Casts one view piece by piece: rows, and for rays that are too long for one dispatch ranges of samples.
     fn cast(&mut self, gpu: &Gpu, prepared: &Prepared, view: &View, target: &Target) -> Result<(), GpuError> {
+        let parameters = &prepared.parameters;
         let [width, height] = view.size;
-        let is_segmented = prepared.sample_limit != u32::MAX;
         let state_row_bytes = u64::from(width) * RAY_STATE_BYTES;
-        let most_rows =
-            if is_segmented { (MOST_STATE_BYTES / state_row_bytes).max(1) as u32 } else { height };
-        let state_rows = if is_segmented { most_rows.min(height) } else { 0 };
+        let state_rows =
+            ((MOST_STATE_BYTES / state_row_bytes) as u32).clamp(BAND_ROWS, height.max(BAND_ROWS));
+        let most_samples = parameters.most_samples_per_ray();
+        let iterations = cast_pass::iterations_per_sample(parameters);
+        let may_be_split = sample_limit(most_samples, iterations, 1.0) != u32::MAX;
         let states = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("ray states"),
-            size: (u64::from(state_rows) * state_row_bytes).max(RAY_STATE_BYTES),
+            size: state_row_bytes * u64::from(if may_be_split { state_rows } else { BAND_ROWS }),
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
@@ -167,18 +166,26 @@ impl Renderer {
         );
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target_group };
 
-        let mut piece = ViewUniform::new(&prepared.parameters, view);
-        piece.sample_limit = prepared.sample_limit;
-        let most_samples = prepared.parameters.most_samples_per_ray();
+        let reads = cast_pass::reads_per_sample(parameters);
+        let bands = band_samples(parameters, view);
+        let bands_with_states = if may_be_split { state_rows / BAND_ROWS } else { u32::MAX };
+        let mut piece = ViewUniform::new(parameters, view);
         while piece.first_row < height {
-            piece.row_count = self.pacer.rows(width, height - piece.first_row).min(most_rows);
+            let budget = self.pacer.budget(reads);
+            let left = &bands[(piece.first_row / BAND_ROWS) as usize..];
+            let left = &left[..left.len().min(bands_with_states as usize)];
+            let (band_count, samples) = fitting_bands(left, budget);
+            let share_of_ray = (budget / samples).min(1.0);
+            piece.row_count = (band_count * BAND_ROWS).min(height - piece.first_row);
+            piece.sample_limit = sample_limit(most_samples, iterations, share_of_ray);
             piece.first_sample = 0;
             while piece.first_sample < most_samples {
                 gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
                 let start = Instant::now();
                 cast_pass::dispatch(gpu, &prepared.pipeline, &bindings, target, piece.row_count);
                 gpu.wait()?;
-                self.pacer.learn(piece.row_count * width, start.elapsed());
+                let share = (f64::from(piece.sample_limit) / f64::from(most_samples)).min(1.0);
+                self.pacer.learn(samples * share, start.elapsed());
                 piece.first_sample = piece.first_sample.saturating_add(piece.sample_limit);
             }
             piece.first_row += piece.row_count;

@@ -82,9 +82,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     check_writable(&args.output, "png")?;
     args.camera.check()?;
     args.look.check()?;
-    let loaded = args.volume.load()?;
+    let mut loaded = args.volume.load()?;
+    let look = args.look.resolve(&loaded.volume)?;
+    loaded.volume.fill_non_finite(look.settings.window.lo());
     let volume = &loaded.volume;
-    let look = args.look.resolve(volume)?;
     let placement = Placement::new(volume, world_from_patient(volume.grid(), args.camera.up.direction()));
     let parameters = CastParameters::new(&look.settings, &placement);
     let mut engine = args.open(args.backend, volume, &parameters)?;

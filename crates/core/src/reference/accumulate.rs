@@ -1,15 +1,14 @@
 //! Accumulators: from the samples of a ray to a pixel.
 //!
-//! A ray is cast by `start`, `accumulate` over one or more ranges of samples, and `finish`.
+//! A ray is cast by `start`, `accumulate` over all its samples, and `finish`.
 
 use super::classify::{Classify, Context, Isovalue};
 use super::ray::Ray;
 use super::shade::shade;
 use super::volume::Stored;
-use crate::cast::FIRST_HIT_ALPHA;
+use crate::cast::{BISECTIONS, FIRST_HIT_ALPHA, SURFACE_LIFT};
 use glam::Vec3A;
 use std::marker::PhantomData;
-use std::ops::Range;
 
 /// What a ray has gathered so far.
 #[derive(Debug, Clone, Copy)]
@@ -61,8 +60,8 @@ pub(super) trait Accumulate {
     /// The state before the first sample.
     fn start<T: Stored>(context: &Context<'_, T>, ray: &Ray) -> RayState;
 
-    /// Takes a range of samples that follows the one before.
-    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState);
+    /// Takes the samples.
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState);
 
     /// The pixel of a ray whose samples are all taken.
     fn finish<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &RayState) -> Pixel;
@@ -81,11 +80,11 @@ impl<C: Classify> Accumulate for Composite<C> {
         RayState::new(value_at_entry(context, ray))
     }
 
-    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState) {
         let smallest_transmittance = 1.0 - context.parameters.termination_alpha;
-        for i in range {
+        for i in 0..ray.sample_count {
             let position = ray.at(i as f32);
-            let value = context.sampler.value_at(position);
+            let value = context.sampler.value_at(ray.at(i as f32 + C::VALUE_OFFSET));
             state.samples += 1;
             if C::may_be_visible(context, value, state.scalar) {
                 let classified = C::classify(context, position, value, state.scalar);
@@ -119,8 +118,8 @@ impl Accumulate for Mip {
         RayState::new(-1.0)
     }
 
-    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
-        keep_best(context, ray, range, state, |value, best| value > best);
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState) {
+        keep_best(context, ray, state, |value, best| value > best);
     }
 
     fn finish<T: Stored>(context: &Context<'_, T>, _: &Ray, state: &RayState) -> Pixel {
@@ -136,8 +135,8 @@ impl Accumulate for MinIp {
         RayState::new(2.0)
     }
 
-    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
-        keep_best(context, ray, range, state, |value, best| value < best);
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState) {
+        keep_best(context, ray, state, |value, best| value < best);
     }
 
     fn finish<T: Stored>(context: &Context<'_, T>, _: &Ray, state: &RayState) -> Pixel {
@@ -148,13 +147,12 @@ impl Accumulate for MinIp {
 fn keep_best<T: Stored>(
     context: &Context<'_, T>,
     ray: &Ray,
-    range: Range<u32>,
     state: &mut RayState,
     is_better: impl Fn(f32, f32) -> bool,
 ) {
-    state.samples += range.end - range.start;
+    state.samples = ray.sample_count;
     let mut best_index = None;
-    for i in range {
+    for i in 0..ray.sample_count {
         let value = context.sampler.value_at(ray.at(i as f32));
         if is_better(value, state.scalar) {
             state.scalar = value;
@@ -174,8 +172,8 @@ impl Accumulate for Mean {
         RayState { depth_m: ray.depth_m(0.0), ..RayState::new(0.0) }
     }
 
-    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
-        add_values(context, ray, range, state);
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState) {
+        add_values(context, ray, state);
     }
 
     fn finish<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &RayState) -> Pixel {
@@ -191,8 +189,8 @@ impl Accumulate for XRay {
         Mean::start(context, ray)
     }
 
-    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
-        add_values(context, ray, range, state);
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState) {
+        add_values(context, ray, state);
     }
 
     fn finish<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &RayState) -> Pixel {
@@ -201,15 +199,12 @@ impl Accumulate for XRay {
     }
 }
 
-fn add_values<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
-    state.samples += range.end - range.start;
-    for i in range {
+fn add_values<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState) {
+    state.samples = ray.sample_count;
+    for i in 0..ray.sample_count {
         state.scalar += context.sampler.value_at(ray.at(i as f32));
     }
 }
-
-/// Halvings of the step in which an isosurface is found: to a thousandth of a voxel length.
-const BISECTIONS: u32 = 10;
 
 /// First crossing of the isovalue, in either direction.
 pub(super) struct FirstHit;
@@ -219,16 +214,17 @@ impl Accumulate for FirstHit {
         RayState::new(value_at_entry(context, ray))
     }
 
-    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, range: Range<u32>, state: &mut RayState) {
+    fn accumulate<T: Stored>(context: &Context<'_, T>, ray: &Ray, state: &mut RayState) {
         let isovalue = context.parameters.isovalue;
-        for i in range {
+        for i in 0..ray.sample_count {
             let value = context.sampler.value_at(ray.at(i as f32));
             state.samples += 1;
             if (value >= isovalue) != (state.scalar >= isovalue) {
                 let index = crossing(context, ray, i, value >= isovalue);
                 let position = ray.at(index);
                 let classified = Isovalue::classify(context, position, isovalue, isovalue);
-                state.color = shade::<Isovalue, T>(context, ray, position, &classified);
+                let lifted = position + lift(context, classified.gradient);
+                state.color = shade::<Isovalue, T>(context, ray, lifted, &classified);
                 state.transmittance = 0.0;
                 state.depth_m = ray.depth_m(index);
                 return;
@@ -240,6 +236,13 @@ impl Accumulate for FirstHit {
     fn finish<T: Stored>(_: &Context<'_, T>, _: &Ray, state: &RayState) -> Pixel {
         state.pixel()
     }
+}
+
+/// From a surface to where its shading rays start: a little towards lower values, so that rounding does not put half
+/// of the surface into its own shadow. Texture space.
+fn lift<T: Stored>(context: &Context<'_, T>, gradient: Option<Vec3A>) -> Vec3A {
+    let outward = -gradient.unwrap_or(Vec3A::ZERO).normalize_or_zero();
+    context.parameters.texture_from_metric * (outward * SURFACE_LIFT)
 }
 
 /// Where between sample i, which is (or is not) in, and the one before it the isovalue is crossed.

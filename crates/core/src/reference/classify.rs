@@ -31,6 +31,9 @@ pub(super) struct Classified {
 
 /// A way from samples to colour and opacity.
 pub(super) trait Classify: Copy + Send + Sync {
+    /// Where on the ray, counted in steps from a sample's middle, the value that classifies it is taken.
+    const VALUE_OFFSET: f32 = 0.0;
+
     /// Whether a sample may be visible, from its value and the one before it on the ray.
     fn may_be_visible<T: Stored>(context: &Context<'_, T>, value: f32, previous: f32) -> bool {
         let _ = previous;
@@ -84,6 +87,8 @@ impl Classify for ValueGradient {
 pub(super) struct PreIntegrated;
 
 impl Classify for PreIntegrated {
+    const VALUE_OFFSET: f32 = 0.5;
+
     fn may_be_visible<T: Stored>(context: &Context<'_, T>, value: f32, previous: f32) -> bool {
         let (lo, hi) = context.parameters.lut.visible();
         value.max(previous) >= lo && value.min(previous) <= hi
@@ -103,8 +108,13 @@ impl Classify for Isovalue {
         value >= context.parameters.isovalue
     }
 
-    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3A, _: f32, _: f32) -> Classified {
+    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3A, _: f32, _: f32) -> Classified {
         let [r, g, b] = context.parameters.surface_rgb.to_array();
-        Classified { entry: [r, g, b, OPAQUE_LOG2], gradient: None }
+        Classified { entry: [r, g, b, OPAQUE_LOG2], gradient: Some(context.gradient_at(position)) }
+    }
+
+    fn log2_transmittance_at<T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
+        let is_in = context.sampler.value_at(position) >= context.parameters.isovalue;
+        if is_in { OPAQUE_LOG2 } else { 0.0 }
     }
 }

@@ -11,4 +11,5 @@ mod renderer;
 mod shade;
 mod volume;
 
+pub use ray::sample_count;
 pub use renderer::{Cast, Caster};

@@ -35,8 +35,7 @@ impl Ray {
         let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let (near, far) = visible_interval(origin, direction, rays.depth_range_m, parameters);
         let metric_direction = parameters.metric_from_texture.as_dmat3() * direction;
-        let length = (far - near).max(0.0) * metric_direction.length();
-        let sample_count = (length * f64::from(parameters.sampling_factor)).ceil() as u32;
+        let sample_count = samples_between(near, far, metric_direction, parameters);
         let step_depth = if sample_count > 0 { (far - near) / f64::from(sample_count) } else { 0.0 };
         let first_depth = near + 0.5 * step_depth;
         Self {
@@ -59,6 +58,18 @@ impl Ray {
     pub(super) fn depth_m(&self, index: f32) -> f32 {
         self.first_depth_m + self.step_depth_m * index
     }
+}
+
+/// Samples of the ray through a picture position, in pixels from the top left; 0 if it misses.
+pub fn sample_count(rays: &RayField, parameters: &CastParameters, x: f64, y: f64) -> u32 {
+    let (origin, direction) = rays.at(x, y);
+    let (near, far) = visible_interval(origin, direction, rays.depth_range_m, parameters);
+    samples_between(near, far, parameters.metric_from_texture.as_dmat3() * direction, parameters)
+}
+
+fn samples_between(near: f64, far: f64, metric_direction: DVec3, parameters: &CastParameters) -> u32 {
+    let length = (far - near).max(0.0) * metric_direction.length();
+    (length * f64::from(parameters.sampling_factor)).ceil() as u32
 }
 
 /// Depths at which a ray enters and leaves the visible box and half-space; empty if the first is not smaller.

@@ -114,6 +114,6 @@ fn cast_tiles<A: Accumulate, T: Stored>(context: &Context<'_, T>, view: &View) -
 
 fn cast_ray<A: Accumulate, T: Stored>(context: &Context<'_, T>, ray: &Ray) -> Pixel {
     let mut state = A::start(context, ray);
-    A::accumulate(context, ray, 0..ray.sample_count, &mut state);
+    A::accumulate(context, ray, &mut state);
     A::finish(context, ray, &state)
 }

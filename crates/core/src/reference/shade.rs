@@ -3,12 +3,11 @@
 use super::classify::{Classified, Classify, Context};
 use super::ray::{Ray, is_inside};
 use super::volume::Stored;
-use crate::cast::{AMBIENT_RADIUS, DIRECTIONAL_STEPS, PHONG, SHADING_STEP, SHADOW_SAMPLES};
+use crate::cast::{
+    AMBIENT_RADIUS, AMBIENT_SAMPLES, DIRECTIONAL_STEPS, FLAT_SQUARED, PHONG, SHADING_STEP, SHADOW_SAMPLES,
+};
 use crate::scene::Shading;
 use glam::Vec3A;
-
-/// Squared gradient below which a sample has no surface to light.
-const FLAT_SQUARED: f32 = 1e-10;
 
 /// The display-referred colour of a lit sample.
 pub(super) fn shade<C: Classify, T: Stored>(
@@ -75,7 +74,7 @@ fn ambient<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) ->
         let offset = context.parameters.texture_from_metric * (direction * AMBIENT_RADIUS);
         (log2_transmittance_inside::<C, T>(context, position + offset) * AMBIENT_RADIUS).exp2()
     };
-    axes.chain(corners).map(transmittance).sum::<f32>() / 14.0
+    axes.chain(corners).map(transmittance).sum::<f32>() / AMBIENT_SAMPLES as f32
 }
 
 /// Coloured light from each direction, traced for 4 steps (SP Fig. 9), so weighted that no occlusion is white.

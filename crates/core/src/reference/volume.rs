@@ -70,8 +70,7 @@ impl<T: Stored> PaddedVoxels<T> {
         let [x, y, z] = rounded.to_array().map(|r| (r.to_bits() - TWO_TO_23.to_bits()) as usize);
         let base = x + y * self.row + z * self.slice;
         let along_x = |base: usize| {
-            let pair = &self.voxels[base..base + 2];
-            let (a, b) = (pair[0].to_f32(), pair[1].to_f32());
+            let (a, b) = (self.voxels[base].to_f32(), self.voxels[base + 1].to_f32());
             a + (b - a) * fraction.x
         };
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;

@@ -15,7 +15,10 @@ const VALUES_2D: usize = 1024;
 const GRADIENTS_2D: usize = 256;
 const SEGMENT_ENDS: usize = 512;
 
-/// A table over normalised value (fast axis) and a second coordinate, looked up at the nearest entry.
+/// A table over normalised value (fast axis) and a second coordinate.
+///
+/// Looked up by interpolating the logarithm between entries (an error of α would add up along a ray) and taking the
+/// colour of the nearest entry (an 8192th of its change is invisible).
 ///
 /// The second coordinate is nothing for 1D transfer functions (height 1), the gradient magnitude in [0, 1] for
 /// 2D ones, and the value at the segment's far end for pre-integrated ones.
@@ -80,10 +83,10 @@ impl Lut {
     fn from_entries(width: usize, height: usize, entries: Vec<LutEntry>) -> Self {
         let opaque_columns =
             || (0..width).filter(|&column| (0..height).any(|row| entries[row * width + column][3] < 0.0));
-        let half_entry = 0.51 / (width - 1) as f32;
+        let one_entry = 1.01 / (width - 1) as f32;
         let visible = match (opaque_columns().next(), opaque_columns().next_back()) {
             (Some(first), Some(last)) => {
-                (coordinate(first, width) - half_entry, coordinate(last, width) + half_entry)
+                (coordinate(first, width) - one_entry, coordinate(last, width) + one_entry)
             }
             _ => (2.0, -1.0),
         };
@@ -111,19 +114,33 @@ impl Lut {
         self.visible
     }
 
-    /// The entry nearest to a normalised value, for 1D tables.
+    /// The entry at a normalised value; of a table with two coordinates, in its first row.
     pub fn at(&self, value: f32) -> LutEntry {
-        self.entries[index(value, self.width)]
+        self.at_in_row(0, value)
     }
 
-    /// The entry nearest to a normalised value and a second coordinate in [0, 1].
+    /// The entry at a normalised value and a second coordinate in [0, 1].
     pub fn at_2d(&self, value: f32, second: f32) -> LutEntry {
-        self.entries[index(second, self.height) * self.width + index(value, self.width)]
+        let (row, fraction) = position(second, self.height);
+        let (below, above) = (self.at_in_row(row, value), self.at_in_row(row + 1, value));
+        let [r, g, b, _] = if fraction < 0.5 { below } else { above };
+        [r, g, b, below[3] + (above[3] - below[3]) * fraction]
+    }
+
+    fn at_in_row(&self, row: usize, value: f32) -> LutEntry {
+        let (column, fraction) = position(value, self.width);
+        let before = row * self.width + column;
+        let (below, above) = (self.entries[before][3], self.entries[before + 1][3]);
+        let [r, g, b, _] = self.entries[before + (fraction + 0.5) as usize];
+        [r, g, b, below + (above - below) * fraction]
     }
 }
 
-fn index(coordinate: f32, count: usize) -> usize {
-    ((coordinate * (count - 1) as f32 + 0.5) as usize).min(count - 1)
+/// The entry before a coordinate in [0, 1] that has one after it, and the way from it to that one.
+fn position(coordinate: f32, count: usize) -> (usize, f32) {
+    let along = coordinate * (count - 1) as f32;
+    let before = (along as usize).min(count - 2);
+    (before, along - before as f32)
 }
 
 fn coordinate(index: usize, count: usize) -> f32 {

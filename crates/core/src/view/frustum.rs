@@ -55,6 +55,9 @@ pub enum FrustumError {
     /// A field of view outside (0, π).
     #[error("field of view {0} rad: must be above 0 and below pi")]
     FieldOfView(f64),
+    /// A height of a parallel projection that is not above zero.
+    #[error("height {0} m of a parallel projection: must be above 0 and finite")]
+    Height(f64),
     /// A picture without area.
     #[error("picture of {0}x{1} pixels: both must be at least 1")]
     Size(u32, u32),
@@ -91,13 +94,13 @@ impl OrthographicBox {
     /// A symmetric box of a given height in metres; the width follows from square pixels.
     ///
     /// # Errors
-    /// An empty picture, or (as a field of view of 0) a height that is not positive.
+    /// An empty picture, or a height that is not positive and finite.
     pub fn from_height(height_m: f64, size: [u32; 2]) -> Result<Self, FrustumError> {
         if size.contains(&0) {
             return Err(FrustumError::Size(size[0], size[1]));
         }
         if !(height_m > 0.0 && height_m.is_finite()) {
-            return Err(FrustumError::FieldOfView(height_m));
+            return Err(FrustumError::Height(height_m));
         }
         let up_m = 0.5 * height_m;
         let right_m = up_m * f64::from(size[0]) / f64::from(size[1]);

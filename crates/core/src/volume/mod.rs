@@ -17,13 +17,13 @@ use thiserror::Error;
 /// A scalar volume in memory.
 ///
 /// Voxel (i, j, k) is at `i + dims.x * (j + dims.y * k)`: the first axis varies fastest. All values are
-/// finite; [`Volume::new`] replaces NaN and infinities by the smallest finite value and counts them.
+/// finite; [`Volume::new`] replaces NaN and infinities by the smallest finite value and remembers where they were.
 #[derive(Debug, Clone)]
 pub struct Volume {
     grid: Grid,
     voxels: Voxels,
     range: (f64, f64),
-    non_finite_count: usize,
+    non_finite_mask: Vec<u64>,
 }
 
 /// Why voxels and a grid do not make a volume.
@@ -62,8 +62,9 @@ impl Volume {
             });
         }
         let range = voxels.finite_range().ok_or(VolumeError::NothingFinite { count: grid.voxel_count() })?;
-        let non_finite_count = voxels.replace_non_finite(range.0);
-        Ok(Self { grid, voxels, range, non_finite_count })
+        let non_finite_mask = voxels.non_finite_mask();
+        voxels.fill(&non_finite_mask, range.0);
+        Ok(Self { grid, voxels, range, non_finite_mask })
     }
 
     /// Size, spacing and place of the voxel grid.
@@ -81,9 +82,15 @@ impl Volume {
         self.range
     }
 
-    /// How many voxels were NaN or infinite and now hold the smallest finite value.
+    /// How many voxels were NaN or infinite.
     pub fn non_finite_count(&self) -> usize {
-        self.non_finite_count
+        self.non_finite_mask.iter().map(|bits| bits.count_ones() as usize).sum()
+    }
+
+    /// Gives the voxels that were NaN or infinite a value, such as the low end of the window. The range stays that
+    /// of the finite voxels.
+    pub fn fill_non_finite(&mut self, value: f64) {
+        self.voxels.fill(&self.non_finite_mask, value);
     }
 
     /// Histogram, percentiles and moments of the values.

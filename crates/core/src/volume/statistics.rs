@@ -73,7 +73,7 @@ impl Statistics {
     }
 }
 
-/// A place within a run of voxels that follows no pattern (SplitMix64), the same every time. The first of each run
+/// A place within a run of voxels that follows no pattern (`SplitMix64`), the same every time. The first of each run
 /// would not do: where the length of a row divides that of a run, all of them lie in one plane.
 fn scattered(start: usize, run: usize) -> usize {
     let mut hash = (start as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -111,10 +111,12 @@ mod tests {
 
     #[test]
     fn non_finite_voxels_become_the_low_end() {
-        let volume = volume(vec![f32::NAN, 2.0, f32::INFINITY, 4.0, f32::NEG_INFINITY]);
+        let mut volume = volume(vec![f32::NAN, 2.0, f32::INFINITY, 4.0, f32::NEG_INFINITY]);
         assert_eq!(volume.range(), (2.0, 4.0));
         assert_eq!(volume.non_finite_count(), 3);
         assert_eq!(volume.voxels(), &Voxels::F32(vec![2.0, 2.0, 2.0, 4.0, 2.0]));
+        volume.fill_non_finite(-7.0);
+        assert_eq!(volume.voxels(), &Voxels::F32(vec![-7.0, 2.0, -7.0, 4.0, -7.0]));
     }
 
     #[test]

@@ -40,6 +40,12 @@ impl StorageKind {
     }
 }
 
+/// How many times their range values may be away from zero and be held in f32 as they are.
+const MOST_OFFSET: f64 = 1e3;
+
+/// Ranges from here on are scaled, so that interpolation between f32 values cannot overflow.
+const LARGEST_F32_RANGE: f64 = 1e37;
+
 /// Voxels as stored.
 #[derive(Debug, Clone)]
 #[allow(missing_docs, reason = "each variant is the array of the storage kind that it names")]
@@ -58,16 +64,21 @@ pub struct Encoding {
 }
 
 impl Encoding {
-    /// The encoding of a volume at a precision. Integers that fit keep their steps; the rest is scaled from the
-    /// volume's range to the whole range of the kind ([0, 1] for f32).
+    /// The encoding of a volume at a precision. Integers that fit keep their steps, and what f32 holds well stays as
+    /// it is (a fill value far outside the data then costs no precision); the rest is scaled from the volume's range
+    /// to the whole range of the kind ([0, 1] for f32).
     pub fn new(volume: &Volume, kind: StorageKind) -> Self {
         let (lo, hi) = volume.range();
         let fits = kind != StorageKind::F32 && StorageKind::lossless_for(volume) <= kind;
-        let is_native = matches!(
-            (kind, volume.voxels().voxel_type()),
-            (StorageKind::U8, VoxelType::U8) | (StorageKind::U16, VoxelType::U16)
-        );
-        let value_per_stored = if fits || hi <= lo {
+        let is_native = match kind {
+            StorageKind::U8 => volume.voxels().voxel_type() == VoxelType::U8,
+            StorageKind::U16 => volume.voxels().voxel_type() == VoxelType::U16,
+            StorageKind::F32 => {
+                lo.abs().max(hi.abs()) <= MOST_OFFSET * (hi - lo) && hi - lo < LARGEST_F32_RANGE
+            }
+        };
+        let is_exact = fits || (is_native && kind == StorageKind::F32);
+        let value_per_stored = if is_exact || hi <= lo {
             1.0
         } else {
             (hi - lo)

@@ -139,22 +139,44 @@ impl Voxels {
         self.len() == 0
     }
 
-    /// Replaces NaN and infinite voxels by `value` and counts them.
-    pub(super) fn replace_non_finite(&mut self, value: f64) -> usize {
-        fn replace<T: Copy + Send + Sync>(
-            voxels: &mut [T],
-            value: T,
-            keep: impl Fn(T) -> bool + Sync + Send,
-        ) -> usize {
-            voxels.par_iter_mut().filter_map(|x| (!keep(*x)).then(|| *x = value)).count()
+    /// Which voxels are NaN or infinite, one bit each; empty if none is.
+    pub(super) fn non_finite_mask(&self) -> Vec<u64> {
+        fn mask<T: Voxel>(voxels: &[T]) -> Vec<u64> {
+            let bits = |chunk: &[T]| {
+                let bit = |(i, x): (usize, &T)| u64::from(!is_usable(x.to_f64())) << i;
+                chunk.iter().enumerate().map(bit).sum()
+            };
+            voxels.par_chunks(MASK_BITS).map(bits).collect()
+        }
+        let mask = match self {
+            Self::F32(v) => mask(v),
+            Self::F64(v) => mask(v),
+            _ => Vec::new(),
+        };
+        if mask.iter().all(|&bits| bits == 0) { Vec::new() } else { mask }
+    }
+
+    /// Sets the float voxels of a mask to a value.
+    pub(super) fn fill(&mut self, mask: &[u64], value: f64) {
+        fn fill<T: Copy>(voxels: &mut [T], mask: &[u64], value: T) {
+            for (chunk, bits) in voxels.chunks_mut(MASK_BITS).zip(mask).filter(|(_, bits)| **bits != 0) {
+                for (i, voxel) in chunk.iter_mut().enumerate() {
+                    if bits >> i & 1 == 1 {
+                        *voxel = value;
+                    }
+                }
+            }
         }
         match self {
-            Self::F32(v) => replace(v, value as f32, |x| is_usable(f64::from(x))),
-            Self::F64(v) => replace(v, value, is_usable),
-            _ => 0,
+            Self::F32(v) => fill(v, mask, value as f32),
+            Self::F64(v) => fill(v, mask, value),
+            _ => {}
         }
     }
 }
+
+/// Voxels that a word of a mask stands for.
+const MASK_BITS: usize = 64;
 
 /// Whether a value can be windowed: finite, and small enough that a difference of two is finite too.
 fn is_usable(value: f64) -> bool {

@@ -1,4 +1,4 @@
-import package::lib::classify::{may_be_visible};
+import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
 import package::lib::ray_state::{RayState};
@@ -9,10 +9,9 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
     var state = before;
     var i = begin;
     while i < end {
-        let position = ray_at(ray, f32(i));
-        let value = value_at(position);
+        let value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
         if may_be_visible(value, state.scalar) {
-            state = blend(ray, i, position, value, state);
+            state = blend(ray, i, value, state);
         }
         state.scalar = value;
         i++;

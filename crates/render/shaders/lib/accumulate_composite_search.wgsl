@@ -1,4 +1,4 @@
-import package::lib::classify::{may_be_visible};
+import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
 import package::lib::ray_state::{RayState};
@@ -15,21 +15,19 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
     while i < end && state.is_finished == 0u {
         let stretch_end = min(i + STRETCH, end);
         while i < stretch_end {
-            var position = ray_at(ray, f32(i));
-            var value = value_at(position);
+            var value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
             while !may_be_visible(value, state.scalar) {
                 state.scalar = value;
                 i++;
                 if i >= stretch_end {
                     break;
                 }
-                position = ray_at(ray, f32(i));
-                value = value_at(position);
+                value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
             }
             if i >= stretch_end {
                 break;
             }
-            state = blend(ray, i, position, value, state);
+            state = blend(ray, i, value, state);
             state.scalar = value;
             i++;
             if is_opaque(state) {

@@ -8,6 +8,19 @@ import package::lib::volume::{value_at};
 // Halvings of the step in which an isosurface is found: to a thousandth of a voxel length.
 const BISECTIONS: u32 = 10u;
 
+// How far above an isosurface its shading rays start, voxel lengths.
+const SURFACE_LIFT: f32 = 0.5;
+
+// From a surface to where its shading rays start: a little towards lower values, so that rounding does not put half
+// of the surface into its own shadow. Texture space.
+fn lift(gradient: vec3f) -> vec3f {
+    let squared = dot(gradient, gradient);
+    if squared == 0.0 {
+        return vec3f(0.0);
+    }
+    return parameters.texture_from_metric * (gradient * (-SURFACE_LIFT * inverseSqrt(squared)));
+}
+
 fn is_in(value: f32) -> bool {
     return value >= parameters.isovalue;
 }
@@ -49,7 +62,8 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
     }
     let index = 0.5 * (lo + hi);
     let position = ray_at(ray, index);
-    state.color = shade(ray, position, classify(position, parameters.isovalue, parameters.isovalue));
+    let classified = classify(position, parameters.isovalue, parameters.isovalue);
+    state.color = shade(ray, position + lift(classified.gradient), classified);
     state.depth_m = ray_depth_m(ray, index);
     return state;
 }

@@ -7,6 +7,9 @@ import package::lib::volume::{value_at};
 
 const CLASSIFIER_HAS_GRADIENT = false;
 
+// Where on the ray, counted in steps from a sample's middle, the value that classifies it is taken.
+const VALUE_OFFSET: f32 = 0.5;
+
 // Whether a sample may be visible, from its value and the one before it on the ray.
 fn may_be_visible(value: f32, previous: f32) -> bool {
     return max(value, previous) >= parameters.visible.x && min(value, previous) <= parameters.visible.y;

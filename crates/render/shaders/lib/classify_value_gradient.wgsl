@@ -8,6 +8,9 @@ import package::lib::volume::{value_at};
 
 const CLASSIFIER_HAS_GRADIENT = true;
 
+// Where on the ray, counted in steps from a sample's middle, the value that classifies it is taken.
+const VALUE_OFFSET: f32 = 0.0;
+
 // Whether a sample may be visible, from its value and the one before it on the ray.
 fn may_be_visible(value: f32, previous: f32) -> bool {
     return value >= parameters.visible.x && value <= parameters.visible.y;

@@ -14,8 +14,9 @@ fn start_ray(ray: Ray) -> RayState {
 }
 
 // Puts sample i, which may be visible, behind what the ray has gathered.
-fn blend(ray: Ray, i: u32, position: vec3f, value: f32, before: RayState) -> RayState {
+fn blend(ray: Ray, i: u32, value: f32, before: RayState) -> RayState {
     var state = before;
+    let position = ray_at(ray, f32(i));
     let classified = classify(position, value, state.scalar);
     let step_transmittance = exp2(classified.entry.w * ray.step_length);
     let rgb = shade(ray, position, classified);

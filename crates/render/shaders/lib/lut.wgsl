@@ -1,19 +1,34 @@
 import package::lib::cast_parameters::{parameters};
 
-// Colour and log2 transmittance of one voxel length, the value axis fastest.
+// Colour and log2 transmittance of one voxel length, the value axis fastest. Looked up by interpolating the logarithm
+// between entries and taking the colour of the nearest entry.
 @group(1) @binding(2) var<storage, read> lut: array<vec4f>;
 
-fn lut_index(coordinate: f32, count: u32) -> u32 {
-    return min(u32(coordinate * f32(count - 1u) + 0.5), count - 1u);
+// The entry before a coordinate in [0, 1] that has one after it.
+fn lut_before(along: f32, count: u32) -> u32 {
+    return min(u32(along), count - 2u);
 }
 
-// The entry nearest to a normalised value; of a two-dimensional table its first row.
+fn lut_at_in_row(row: u32, value: f32) -> vec4f {
+    let along = value * f32(parameters.lut_size.x - 1u);
+    let column = lut_before(along, parameters.lut_size.x);
+    let fraction = along - f32(column);
+    let before = row * parameters.lut_size.x + column;
+    let nearest = before + u32(fraction + 0.5);
+    return vec4f(lut[nearest].rgb, mix(lut[before].w, lut[before + 1u].w, fraction));
+}
+
+// The entry at a normalised value; of a table with two coordinates, in its first row.
 fn lut_at(value: f32) -> vec4f {
-    return lut[lut_index(value, parameters.lut_size.x)];
+    return lut_at_in_row(0u, value);
 }
 
-// The entry nearest to a normalised value and a second coordinate in [0, 1].
+// The entry at a normalised value and a second coordinate in [0, 1].
 fn lut_at_2d(value: f32, second: f32) -> vec4f {
-    let row = lut_index(second, parameters.lut_size.y);
-    return lut[row * parameters.lut_size.x + lut_index(value, parameters.lut_size.x)];
+    let along = second * f32(parameters.lut_size.y - 1u);
+    let row = lut_before(along, parameters.lut_size.y);
+    let fraction = along - f32(row);
+    let below = lut_at_in_row(row, value);
+    let above = lut_at_in_row(row + 1u, value);
+    return vec4f(select(below.rgb, above.rgb, fraction >= 0.5), mix(below.w, above.w, fraction));
 }

@@ -122,13 +122,15 @@ impl Gpu {
         &self.description.capabilities
     }
 
-    /// Returns the first error reported since the last check.
+    /// Returns the first error reported since the last check; a lost device stays lost.
     ///
     /// # Errors
     /// Whatever the device reported.
     pub fn check(&self) -> Result<(), GpuError> {
-        match self.fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            Some(error) => Err(error),
+        let mut fault = self.fault.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*fault {
+            Some(lost @ GpuError::Lost { .. }) => Err(lost.clone()),
+            Some(_) => fault.take().map_or(Ok(()), Err),
             None => Ok(()),
         }
     }
@@ -142,7 +144,10 @@ impl Gpu {
             .device
             .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(SUBMISSION_TIMEOUT) });
         self.check()?;
-        polled.map(drop).map_err(|_| GpuError::Hung { seconds: SUBMISSION_TIMEOUT.as_secs() })
+        polled.map(drop).map_err(|error| match error {
+            wgpu::PollError::Timeout => GpuError::Hung { seconds: SUBMISSION_TIMEOUT.as_secs() },
+            other => GpuError::Refused { reason: other.to_string() },
+        })
     }
 }
 
