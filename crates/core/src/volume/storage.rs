@@ -43,8 +43,9 @@ impl StorageKind {
 /// How many times their range values may be away from zero and be held in f32 as they are.
 const MOST_OFFSET: f64 = 1e3;
 
-/// Ranges from here on are scaled, so that interpolation between f32 values cannot overflow.
-const LARGEST_F32_RANGE: f64 = 1e37;
+/// Wider ranges are scaled, so that the difference of two f32 values cannot overflow. A fill value of `f32::MIN` beside
+/// ordinary data is not wider.
+const LARGEST_F32_RANGE: f64 = f32::MAX as f64;
 
 /// Voxels as stored.
 #[derive(Debug, Clone)]
@@ -74,7 +75,7 @@ impl Encoding {
             StorageKind::U8 => volume.voxels().voxel_type() == VoxelType::U8,
             StorageKind::U16 => volume.voxels().voxel_type() == VoxelType::U16,
             StorageKind::F32 => {
-                lo.abs().max(hi.abs()) <= MOST_OFFSET * (hi - lo) && hi - lo < LARGEST_F32_RANGE
+                lo.abs().max(hi.abs()) <= MOST_OFFSET * (hi - lo) && hi - lo <= LARGEST_F32_RANGE
             }
         };
         let is_exact = fits || (is_native && kind == StorageKind::F32);

@@ -12,4 +12,5 @@ mod resolution;
 mod scene;
 mod shading;
 mod stereo;
+mod storage;
 mod tolerance;
