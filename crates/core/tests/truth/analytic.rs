@@ -5,6 +5,7 @@ use crate::tolerance;
 use glam::DVec3;
 use wheatstone_core::phantom::{Phantom, SPHERE_RADIUS};
 use wheatstone_core::scene::{Mode, Settings};
+use wheatstone_core::transfer::{OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::Volume;
 
@@ -63,6 +64,64 @@ fn a_homogeneous_slab_transmits_by_beer_and_lambert() {
         }
     }
     assert!(worst > 0.0, "pictures of nothing are no test");
+}
+
+/// Opacity along x through the middle of a volume.
+fn opacity_along_x(volume: &Volume, settings: &Settings) -> f64 {
+    let size = [1, 1];
+    let view = look(DVec3::X * 10.0, DVec3::ZERO, DVec3::Y, orthographic(1e-3, size), size);
+    f64::from(color_at(&cast(volume, settings, &view).image, 0, 0)[3])
+}
+
+/// Opacities between two entries of any table, with so many voxels that the error of one adds up.
+const BETWEEN_ENTRIES: [(f64, usize); 2] = [(0.026, 40), (0.0019, 512)];
+
+#[test]
+fn opacities_between_two_entries_of_a_table_add_up_to_the_truth() {
+    let ramp = TransferFunction::ramp(0.0, 1.0).unwrap();
+    let two_dimensional = TransferFunction::ramp_2d(0.0, 1.0, 0.0, 0.0).unwrap();
+    for (alpha, voxels) in BETWEEN_ENTRIES {
+        let volume = volume_of([voxels, 4, 4], [1.0; 3], |_| alpha);
+        let expected = 1.0 - (1.0 - alpha).powi(voxels as i32);
+        for (name, transfer, preintegrated) in
+            [("1D", &ramp, false), ("2D", &two_dimensional, false), ("pre-integrated", &ramp, true)]
+        {
+            for sampling_factor in [0.5, 1.0, 2.0, 7.0] {
+                let plain = exact_settings(unit_window(), transfer.clone());
+                let settings = Settings { sampling_factor, preintegrated, ..plain };
+                let found = opacity_along_x(&volume, &settings);
+                assert!(
+                    (found - expected).abs() <= tolerance::TRANSMITTANCE,
+                    "{name} α={alpha} × {voxels} f={sampling_factor}: {found} is not {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn gradients_between_two_entries_of_a_table_add_up_to_the_truth() {
+    // A value of 0.4 on the ray that rises across it by a gradient that gives the rest of the opacity.
+    const VALUE: f64 = 0.4;
+    const FULL_GRADIENT: f64 = 0.9;
+    for (alpha, voxels) in BETWEEN_ENTRIES {
+        let slope = alpha / VALUE * FULL_GRADIENT;
+        let volume = volume_of([voxels, 5, 4], [1.0; 3], |p| VALUE + slope * (p.y - 2.5));
+        let expected = 1.0 - (1.0 - alpha).powi(voxels as i32);
+        let gradient_opacity = [(0.0, 0.0), (FULL_GRADIENT as f32, 1.0)];
+        let transfer = TransferFunction::ramp(0.0, 1.0)
+            .unwrap()
+            .with_gradient_opacity(gradient_opacity.map(|(at, alpha)| OpacityPoint { at, alpha }).to_vec())
+            .unwrap();
+        for sampling_factor in [0.5, 1.0, 2.0, 7.0] {
+            let plain = exact_settings(unit_window(), transfer.clone());
+            let found = opacity_along_x(&volume, &Settings { sampling_factor, ..plain });
+            assert!(
+                (found - expected).abs() <= tolerance::TRANSMITTANCE,
+                "α={alpha} × {voxels} f={sampling_factor}: {found} is not {expected}"
+            );
+        }
+    }
 }
 
 #[test]

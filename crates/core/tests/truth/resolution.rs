@@ -6,7 +6,7 @@ use glam::DVec3;
 use wheatstone_core::metrics::compare;
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::Cast;
-use wheatstone_core::scene::{Mode, Settings, Shading};
+use wheatstone_core::scene::{Clip, Mode, Settings, Shading};
 use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Volume, Window};
@@ -152,6 +152,61 @@ fn preintegration_is_nearer_to_the_truth_at_half_a_sample_per_voxel() {
         let fine = root_mean_square(&truth, &cast(&volume, &settings(true, 8.0), &view()));
         assert!(fine < 0.02, "{phantom}: pre-integration at 8 samples per voxel is {fine:.4} off");
     }
+}
+
+/// The opacity of one ray along x through a value that rises evenly from 1/64 to 63/64 over 62 voxels: the ends of the
+/// volume, where the value does not rise, are cut away.
+fn opacity_along_a_ramp(transfer: &TransferFunction, preintegrated: bool, sampling_factor: f32) -> f64 {
+    let volume = volume_of([64, 4, 4], [1.0; 3], |p| p.x / 64.0);
+    let size = [1, 1];
+    // From the low end to the high one.
+    let view = look(DVec3::NEG_X, DVec3::ZERO, DVec3::Y, orthographic(1e-3, size), size);
+    let plain = exact_settings(unit_window(), transfer.clone());
+    let clip = Clip {
+        box_lo: DVec3::new(1.0 / 64.0, 0.0, 0.0),
+        box_hi: DVec3::new(63.0 / 64.0, 1.0, 1.0),
+        plane: None,
+    };
+    let settings = Settings { preintegrated, sampling_factor, clip, ..plain };
+    f64::from(color_at(&cast(&volume, &settings, &view).image, 0, 0)[3])
+}
+
+#[test]
+fn preintegration_takes_the_whole_ray_and_each_part_of_it_once() {
+    // Functions that are seen at one end of the ray only, at both, or everywhere.
+    let rising: [(&str, &[(f32, f32)]); 5] = [
+        ("rising", &[(0.0, 0.0), (1.0, 0.02)]),
+        ("falling", &[(0.0, 0.02), (1.0, 0.0)]),
+        ("first twentieth", &[(0.0, 0.1), (0.05, 0.0)]),
+        ("last twentieth", &[(0.95, 0.0), (1.0, 0.1)]),
+        ("valley", &[(0.0, 0.03), (0.5, 0.0), (1.0, 0.03)]),
+    ];
+    for (name, opacity) in rising {
+        let transfer = white_transfer(opacity);
+        let truth = opacity_along_a_ramp(&transfer, false, 16.0);
+        for sampling_factor in [0.25, 0.5, 1.0, 3.0] {
+            let found = opacity_along_a_ramp(&transfer, true, sampling_factor);
+            assert!(
+                (found - truth).abs() <= tolerance::PREINTEGRATED_OPACITY,
+                "{name} f={sampling_factor}: {found} is not {truth}"
+            );
+        }
+    }
+}
+
+#[test]
+fn preintegration_sees_what_lies_between_the_samples_of_a_ramp() {
+    // A bump of 7 voxels, where four voxels are a step.
+    let (mut worst_pre, mut worst_post) = (0.0_f64, 0.0_f64);
+    for centre in [0.13, 0.29, 0.4, 0.52, 0.77, 0.91] {
+        let transfer = white_transfer(&[(centre - 0.05, 0.0), (centre, 0.2), (centre + 0.05, 0.0)]);
+        let truth = opacity_along_a_ramp(&transfer, false, 16.0);
+        let error = |preintegrated| (opacity_along_a_ramp(&transfer, preintegrated, 0.25) - truth).abs();
+        worst_pre = worst_pre.max(error(true));
+        worst_post = worst_post.max(error(false));
+    }
+    assert!(worst_pre <= 0.05 * worst_post, "pre-integrated {worst_pre:.4}, post-classified {worst_post:.4}");
+    assert!(worst_pre <= tolerance::PREINTEGRATED_OPACITY, "{worst_pre:.4}");
 }
 
 #[test]

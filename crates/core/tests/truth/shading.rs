@@ -106,6 +106,47 @@ fn a_crevice_is_darker_than_a_face() {
 }
 
 #[test]
+fn a_flat_face_is_evenly_lit_from_around() {
+    // A cube of 24 mm: on the faces' inner 12 mm no sample of the surroundings comes near an edge.
+    let cube = |p: DVec3, middle: DVec3| f64::from(u8::from((p - middle).abs().max_element() < 12.0));
+    let volumes = [
+        ("cubes", volume_of([40, 40, 40], [1.0; 3], |p| cube(p, DVec3::splat(20.0)))),
+        (
+            "bricks",
+            volume_of([40, 40, 20], [1.0, 1.0, 2.0], |p| {
+                cube(p * DVec3::new(1.0, 1.0, 2.0), DVec3::splat(20.0))
+            }),
+        ),
+    ];
+    let size = [48, 48];
+    let at = DVec3::ZERO;
+    let views = [
+        ("front", look(DVec3::Z, at, DVec3::Y, orthographic(0.3, size), size)),
+        ("oblique", look(DVec3::new(0.21, 0.13, 0.5), at, DVec3::Y, perspective(0.7, size), size)),
+    ];
+    for (lattice, volume) in &volumes {
+        for (name, view) in &views {
+            for isovalue in [0.3, 0.5] {
+                let settings = solid_settings(Mode::Isosurface { isovalue }, Shading::Ambient);
+                let image = cast(volume, &settings, view).image;
+                let levels: Vec<f32> = pixels(view)
+                    .filter(|&(x, y)| {
+                        let (origin, direction) = world_ray(view, x, y);
+                        let mm = (origin + direction * depth_at_m(&image, x, y)) / METRES_PER_MM;
+                        mm.x.abs() < 6.0 && mm.y.abs() < 6.0 && (mm.z - 12.0).abs() < 1.5
+                    })
+                    .map(|(x, y)| color_at(&image, x, y)[0])
+                    .collect();
+                assert!(levels.len() > 100, "{lattice} {name}: {} pixels", levels.len());
+                let (lo, hi) = levels.iter().fold((1.0_f32, 0.0_f32), |(lo, hi), &l| (lo.min(l), hi.max(l)));
+                assert!(hi - lo <= 2.0 / 255.0, "{lattice} {name} {isovalue}: from {lo} to {hi}");
+                assert!((0.3..0.9).contains(&lo), "{lattice} {name} {isovalue}: a face is half open: {lo}");
+            }
+        }
+    }
+}
+
+#[test]
 fn clear_surroundings_cast_no_shade() {
     // One voxel in the middle of nothing: every shading but Phong must leave it as it is.
     let volume =

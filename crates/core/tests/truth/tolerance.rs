@@ -27,3 +27,7 @@ pub(crate) const STORAGE_ORDER_DSSIM: f64 = 1e-5;
 
 /// Disparity of a block match, pixels: a parabola through three sums finds the minimum to about a tenth of a pixel.
 pub(crate) const DISPARITY_PIXELS: f64 = 0.15;
+
+/// Opacity of a pre-integrated ray through a ramp: the ends of the table's segments are whole entries of a finer one, so
+/// segments are off by up to an 8192th of the value range. As little as the project promises for a slab.
+pub(crate) const PREINTEGRATED_OPACITY: f64 = 1e-3;
