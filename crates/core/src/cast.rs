@@ -104,12 +104,13 @@ impl CastParameters {
         let classifier = match settings.mode {
             Mode::Isosurface { .. } => Classifier::Isovalue,
             Mode::Composite if settings.preintegrated => Classifier::PreIntegrated,
-            _ if settings.transfer.is_2d() => Classifier::ValueGradient,
+            Mode::Composite if settings.transfer.is_2d() => Classifier::ValueGradient,
             _ => Classifier::Value,
         };
         let lut = match classifier {
             Classifier::PreIntegrated => Lut::bake_preintegrated(&settings.transfer),
-            _ => Lut::bake(&settings.transfer),
+            Classifier::ValueGradient => Lut::bake(&settings.transfer),
+            Classifier::Value | Classifier::Isovalue => Lut::bake_by_value(&settings.transfer),
         };
         let isovalue = if let Mode::Isosurface { isovalue } = settings.mode { isovalue } else { 0.0 };
         let shadow_direction = settings.light.shadow_direction();

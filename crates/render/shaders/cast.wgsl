@@ -10,12 +10,18 @@ import package::lib::view::{view};
 // Rays of a piece between dispatches, row by row.
 @group(2) @binding(2) var<storage, read_write> states: array<RayState>;
 
+// Side of a workgroup, pixels.
+const BAND_ROWS: u32 = 8u;
+
 // The `sample_limit` of a ray that is cast in one go.
 const ALL_SAMPLES: u32 = 0xffffffffu;
 
 // Casts a piece of a picture: `row_count` rows from `first_row`, samples [first_sample, first_sample + sample_limit).
-@compute @workgroup_size(8, 8)
-fn cast_rays(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(BAND_ROWS, BAND_ROWS)
+fn cast_rays(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let band_count = (view.row_count + BAND_ROWS - 1u) / BAND_ROWS;
+    let band = (group.y * view.band_stride) % band_count;
+    let id = vec2u(group.x * BAND_ROWS + local.x, band * BAND_ROWS + local.y);
     if id.x >= view.width || id.y >= view.row_count {
         return;
     }

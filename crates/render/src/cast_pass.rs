@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, DIRECTIONAL_STEPS, SHADOW_SAMPLES};
 use wheatstone_core::scene::{GradientMethod, Mode, Shading};
+use wheatstone_core::transfer::LUT_1D_ENTRIES;
 
 /// Side of a workgroup, pixels; `@workgroup_size` of `cast.wgsl`.
 const WORKGROUP: u32 = 8;
@@ -27,11 +28,8 @@ pub(crate) struct Variant {
 impl Variant {
     /// The kernel for some parameters.
     pub(crate) fn of(parameters: &CastParameters) -> Self {
-        let is_cheap =
-            parameters.shading == Shading::None && parameters.classifier != Classifier::ValueGradient;
         let (accumulator, is_shaded) = match parameters.mode {
-            Mode::Composite if is_cheap => ("lib/accumulate_composite", true),
-            Mode::Composite => (SEARCHING, true),
+            Mode::Composite => (COMPOSITE, true),
             Mode::Mip => ("lib/accumulate_mip", false),
             Mode::MinIp => ("lib/accumulate_minip", false),
             Mode::Mean => ("lib/accumulate_mean", false),
@@ -79,18 +77,15 @@ impl Variant {
         for gradient in gradients {
             for shading in shadings {
                 for classifier in classifiers {
-                    for accumulator in ["lib/accumulate_composite", "lib/accumulate_composite_search"] {
-                        all.push(Self { accumulator, classifier, shading, gradient });
-                    }
+                    all.push(Self { accumulator: COMPOSITE, classifier, shading, gradient });
                 }
                 let classifier = "lib/classify_isovalue";
                 all.push(Self { accumulator: "lib/accumulate_first_hit", classifier, shading, gradient });
             }
         }
         for accumulator in projections {
-            for classifier in classifiers {
-                all.push(Self { accumulator, classifier, shading: "lib/shade_none", gradient: gradients[0] });
-            }
+            let classifier = "lib/classify_value";
+            all.push(Self { accumulator, classifier, shading: "lib/shade_none", gradient: gradients[0] });
         }
         all
     }
@@ -105,16 +100,15 @@ impl Variant {
     }
 }
 
-/// The accumulator for samples that cost much to blend.
-const SEARCHING: &str = "lib/accumulate_composite_search";
+const COMPOSITE: &str = "lib/accumulate_composite";
 
-/// Loop iterations beside shading that a sample of the searching accumulator costs at most: its own, the one that ends
+/// Loop iterations beside shading that a composited sample costs at most: its own, the one that ends
 /// the search, and those that it waits for while the seven others of a group of eight rays search in turn.
 const SEARCH_ITERATIONS: u32 = 10;
 
 /// Loop iterations that a sample costs at most. A loop of n counts n + 1: drivers count the one that ends it.
 pub(crate) fn iterations_per_sample(parameters: &CastParameters) -> u32 {
-    if Variant::of(parameters).accumulator != SEARCHING {
+    if Variant::of(parameters).accumulator != COMPOSITE {
         return 1;
     }
     SEARCH_ITERATIONS
@@ -169,6 +163,7 @@ impl CastPass {
                 },
                 wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                 storage_buffer(true, 16),
+                buffer(wgpu::BufferBindingType::Uniform, 16 * LUT_1D_ENTRIES as u64),
             ],
         );
         let target_layout = bind_group_layout(
@@ -323,7 +318,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 82);
+        assert_eq!(variants.len(), 44);
     }
 
     #[test]

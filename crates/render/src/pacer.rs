@@ -86,6 +86,21 @@ pub(crate) fn fitting_bands(bands: &[f64], budget: f64) -> (u32, f64) {
     (count, samples)
 }
 
+/// A stride that spreads any run of a piece's bands over all of it: software Vulkan gives each thread a run of
+/// workgroups, which would else be dear for one thread and cheap for another.
+pub(crate) fn spreading_stride(bands: u32) -> u32 {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let has_common_factor = |stride: &u32| {
+        let (mut a, mut b) = (*stride, bands);
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a != 1
+    };
+    let ideal = ((f64::from(bands) * GOLDEN) as u32).max(1);
+    (ideal..=bands.max(ideal)).find(|stride| !has_common_factor(stride)).unwrap_or(1)
+}
+
 /// Samples that one dispatch takes of each ray; all of them (`u32::MAX`) where neither the drivers' limit on loop
 /// iterations nor the budget asks for less.
 pub(crate) fn sample_limit(most_samples: u32, iterations_per_sample: u32, share_of_ray: f64) -> u32 {
@@ -136,6 +151,16 @@ mod tests {
         assert_eq!(fitting_bands(&[5.0, 5.0, 5.0], 1.0), (1, 5.0));
         assert_eq!(fitting_bands(&[5.0, 5.0, 5.0], 12.0), (2, 10.0));
         assert_eq!(fitting_bands(&[5.0], 1e9), (1, 5.0));
+    }
+
+    #[test]
+    fn a_spreading_stride_visits_every_band_once() {
+        for bands in 1..300 {
+            let stride = spreading_stride(bands);
+            let mut visited: Vec<u32> = (0..bands).map(|i| i * stride % bands).collect();
+            visited.sort_unstable();
+            assert!(visited.into_iter().eq(0..bands), "{bands} {stride}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::cast_pass::{self, Bindings, CastPass, RAY_STATE_BYTES, Variant};
 use crate::gpu::{Gpu, GpuError};
-use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit};
+use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
 use crate::target::Target;
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
@@ -10,6 +10,7 @@ use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
+use wheatstone_core::transfer::LUT_1D_ENTRIES;
 use wheatstone_core::view::View;
 
 /// Most bytes of ray states between dispatches.
@@ -75,12 +76,13 @@ impl Renderer {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let lut = init_buffer(
-            gpu,
-            "lut",
-            bytemuck::cast_slice(parameters.lut.entries()),
-            wgpu::BufferUsages::STORAGE,
-        );
+        // One of the two table bindings holds the table, the other an empty one.
+        let entries = parameters.lut.entries();
+        let empty = vec![[0.0; 4]; LUT_1D_ENTRIES];
+        let (lut_1d, lut_2d) =
+            if parameters.lut.height() == 1 { (entries, &empty[..1]) } else { (&empty[..], entries) };
+        let lut_1d = init_buffer(gpu, "lut", bytemuck::cast_slice(lut_1d), wgpu::BufferUsages::UNIFORM);
+        let lut_2d = init_buffer(gpu, "2D lut", bytemuck::cast_slice(lut_2d), wgpu::BufferUsages::STORAGE);
         let frame = bind_group(
             gpu,
             &self.cast_pass.frame_layout,
@@ -92,7 +94,8 @@ impl Renderer {
             &[
                 wgpu::BindingResource::TextureView(&volume.texture),
                 wgpu::BindingResource::Sampler(&self.sampler),
-                lut.as_entire_binding(),
+                lut_2d.as_entire_binding(),
+                lut_1d.as_entire_binding(),
             ],
         );
         gpu.check()?;
@@ -178,6 +181,7 @@ impl Renderer {
             let share_of_ray = (budget / samples).min(1.0);
             piece.row_count = (band_count * BAND_ROWS).min(height - piece.first_row);
             piece.sample_limit = sample_limit(most_samples, iterations, share_of_ray);
+            piece.band_stride = if gpu.description().is_software { spreading_stride(band_count) } else { 1 };
             piece.first_sample = 0;
             while piece.first_sample < most_samples {
                 gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));

@@ -54,7 +54,8 @@ pub(crate) struct ViewUniform {
     pub(crate) row_count: u32,
     pub(crate) first_sample: u32,
     pub(crate) sample_limit: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) band_stride: u32,
+    pub(crate) padding: u32,
 }
 
 impl CastUniform {
@@ -110,7 +111,8 @@ impl ViewUniform {
             row_count: height,
             first_sample: 0,
             sample_limit: u32::MAX,
-            padding: [0; 2],
+            band_stride: 1,
+            padding: 0,
         }
     }
 }
@@ -203,6 +205,7 @@ mod tests {
                 row_count,
                 first_sample,
                 sample_limit,
+                band_stride,
             ]
         );
     }

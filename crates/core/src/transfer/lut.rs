@@ -10,7 +10,9 @@ pub type LutEntry = [f32; 4];
 /// The logarithm that stands for α = 1.
 pub const OPAQUE_LOG2: f32 = -1000.0;
 
-const VALUES_1D: usize = 4096;
+/// Entries of a one-dimensional table.
+pub const LUT_1D_ENTRIES: usize = 4096;
+
 const VALUES_2D: usize = 1024;
 const GRADIENTS_2D: usize = 256;
 const SEGMENT_ENDS: usize = 512;
@@ -33,7 +35,7 @@ pub struct Lut {
 impl Lut {
     /// Bakes a 1D or 2D transfer function.
     pub fn bake(transfer: &TransferFunction) -> Self {
-        let (width, height) = if transfer.is_2d() { (VALUES_2D, GRADIENTS_2D) } else { (VALUES_1D, 1) };
+        let (width, height) = if transfer.is_2d() { (VALUES_2D, GRADIENTS_2D) } else { (LUT_1D_ENTRIES, 1) };
         let gradient_alpha: Vec<f32> =
             (0..height).map(|row| transfer.gradient_opacity_at(coordinate(row, height))).collect();
         let columns: Vec<([f32; 3], f32)> = (0..width)
@@ -49,11 +51,16 @@ impl Lut {
         Self::from_entries(width, height, entries)
     }
 
+    /// Bakes a transfer function with its gradient opacity left out.
+    pub fn bake_by_value(transfer: &TransferFunction) -> Self {
+        Self::bake(&TransferFunction { gradient_opacity: Vec::new(), ..transfer.clone() })
+    }
+
     /// Bakes the pre-integrated form of a 1D transfer function (Engel, Kraus, Ertl 2001): entry (front, back)
     /// is the mean colour and transmittance of a voxel length along which the value goes linearly from front to
     /// back. A gradient opacity is left out.
     pub fn bake_preintegrated(transfer: &TransferFunction) -> Self {
-        let fine = Self::bake(&TransferFunction { gradient_opacity: Vec::new(), ..transfer.clone() });
+        let fine = Self::bake_by_value(transfer);
         // Running integrals over value of extinction and of extinction-weighted colour.
         let mut integral = vec![[0.0_f64; 4]; fine.width + 1];
         for (i, &[r, g, b, log2]) in fine.entries.iter().enumerate() {
@@ -114,7 +121,7 @@ impl Lut {
         self.visible
     }
 
-    /// The entry at a normalised value; of a table with two coordinates, in its first row.
+    /// The entry at a normalised value, for 1D tables.
     pub fn at(&self, value: f32) -> LutEntry {
         self.at_in_row(0, value)
     }

@@ -15,7 +15,7 @@ pub use automatic::{AUTOMATIC_BINS, automatic};
 pub use colormap::{Colormap, UnknownColormap};
 pub use file::{TransferFile, transfer_at_values};
 pub use json::{JSON_VERSION, TransferJsonError};
-pub use lut::{Lut, LutEntry, OPAQUE_LOG2};
+pub use lut::{LUT_1D_ENTRIES, Lut, LutEntry, OPAQUE_LOG2};
 pub use preset::{Preset, UnknownPreset};
 
 use thiserror::Error;

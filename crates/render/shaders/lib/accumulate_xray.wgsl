@@ -1,5 +1,5 @@
 import package::lib::cast_parameters::{parameters};
-import package::lib::lut::{lut_at};
+import package::lib::lut_1d::{lut_at};
 import package::lib::ray::{Ray};
 import package::lib::ray_state::{Pixel, RayState, opaque_pixel};
 import package::lib::value_sum::{accumulate, start_ray};

@@ -1,6 +1,6 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classified::{Classified};
-import package::lib::lut::{lut_at_2d};
+import package::lib::lut_2d::{lut_at_2d};
 import package::lib::volume::{value_at};
 
 // One-dimensional transfer function integrated between the values at both ends of a step.

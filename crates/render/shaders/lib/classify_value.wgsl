@@ -1,6 +1,6 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classified::{Classified};
-import package::lib::lut::{lut_at};
+import package::lib::lut_1d::{lut_at};
 import package::lib::volume::{value_at};
 
 // One-dimensional transfer function.

@@ -1,7 +1,7 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classified::{Classified};
 import package::lib::gradient::{gradient_at};
-import package::lib::lut::{lut_at_2d};
+import package::lib::lut_2d::{lut_at_2d};
 import package::lib::volume::{value_at};
 
 // Two-dimensional transfer function of value and gradient magnitude.

@@ -1,4 +1,4 @@
-import package::lib::lut::{lut_at};
+import package::lib::lut_1d::{lut_at};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
 import package::lib::ray_state::{Pixel, RayState, opaque_pixel};
 import package::lib::volume::{value_at};

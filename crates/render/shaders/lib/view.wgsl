@@ -29,6 +29,8 @@ struct View {
     first_sample: u32,
     // Samples of each ray to take at most.
     sample_limit: u32,
+    // Step between the bands of rows that neighbouring workgroups take; has no common factor with the band count.
+    band_stride: u32,
 }
 
 @group(0) @binding(1) var<uniform> view: View;

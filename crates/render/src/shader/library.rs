@@ -11,7 +11,6 @@ macro_rules! files {
 files! {
     "cast",
     "lib/accumulate_composite",
-    "lib/accumulate_composite_search",
     "lib/accumulate_first_hit",
     "lib/accumulate_mean",
     "lib/accumulate_minip",
@@ -27,7 +26,8 @@ files! {
     "lib/extreme_value",
     "lib/gradient_central",
     "lib/gradient_tetrahedron",
-    "lib/lut",
+    "lib/lut_1d",
+    "lib/lut_2d",
     "lib/ray",
     "lib/ray_state",
     "lib/shade_ambient",

@@ -2,7 +2,7 @@ import package::lib::cast_parameters::{parameters};
 
 // Colour and log2 transmittance of one voxel length, the value axis fastest. Looked up by interpolating the logarithm
 // between entries and taking the colour of the nearest entry.
-@group(1) @binding(2) var<storage, read> lut: array<vec4f>;
+@group(1) @binding(2) var<storage, read> lut_2d: array<vec4f>;
 
 // The entry before a coordinate in [0, 1] that has one after it.
 fn lut_before(along: f32, count: u32) -> u32 {
@@ -15,12 +15,7 @@ fn lut_at_in_row(row: u32, value: f32) -> vec4f {
     let fraction = along - f32(column);
     let before = row * parameters.lut_size.x + column;
     let nearest = before + u32(fraction + 0.5);
-    return vec4f(lut[nearest].rgb, mix(lut[before].w, lut[before + 1u].w, fraction));
-}
-
-// The entry at a normalised value; of a table with two coordinates, in its first row.
-fn lut_at(value: f32) -> vec4f {
-    return lut_at_in_row(0u, value);
+    return vec4f(lut_2d[nearest].rgb, mix(lut_2d[before].w, lut_2d[before + 1u].w, fraction));
 }
 
 // The entry at a normalised value and a second coordinate in [0, 1].
