@@ -37,7 +37,7 @@ pub enum TransferReadError {
     /// The bytes are not UTF-8.
     #[error("not a transfer function: the file is not text")]
     NotText,
-    /// Neither JSON nor the numbers that a Slicer volume property starts with.
+    /// Neither JSON nor the lines that a Slicer volume property starts with.
     #[error(
         "not a transfer function: neither Wheatstone's JSON form, nor a ParaView colour map (JSON), nor a Slicer volume property (.vp)"
     )]
@@ -45,6 +45,14 @@ pub enum TransferReadError {
     /// Malformed JSON, or a malformed transfer function in Wheatstone's form.
     #[error(transparent)]
     Json(#[from] TransferJsonError),
+    /// A list in Wheatstone's form that is longer than [`MAX_TRANSFER_POINTS`].
+    #[error("{part} holds {count} points: at most {MAX_TRANSFER_POINTS} are read")]
+    TooManyPoints {
+        /// The list's field.
+        part: &'static str,
+        /// Points in it.
+        count: usize,
+    },
     /// A ParaView colour map with a field that is missing or malformed.
     #[error("ParaView colour map: {problem}")]
     ParaView {
@@ -97,6 +105,7 @@ pub fn parse_transfer(text: &str) -> Result<TransferFile, TransferReadError> {
     if text.starts_with(['{', '[']) {
         let value: serde_json::Value = serde_json::from_str(text).map_err(TransferJsonError::from)?;
         return if value.get("wheatstone_transfer_function").is_some() {
+            check_point_counts(&value)?;
             Ok(TransferFile::from_json(text)?)
         } else if let Some(map) = paraview::find_map(&value) {
             paraview::parse(map)
@@ -104,8 +113,18 @@ pub fn parse_transfer(text: &str) -> Result<TransferFile, TransferReadError> {
             Err(TransferReadError::Unrecognised)
         };
     }
-    let first_word = text.split_whitespace().next().unwrap_or_default();
-    if first_word.parse::<f64>().is_ok() { slicer::parse(text) } else { Err(TransferReadError::Unrecognised) }
+    if slicer::is_volume_property(text) { slicer::parse(text) } else { Err(TransferReadError::Unrecognised) }
+}
+
+/// Bounds the lists of Wheatstone's own form.
+fn check_point_counts(form: &serde_json::Value) -> Result<(), TransferReadError> {
+    for part in ["color", "opacity", "gradient_opacity"] {
+        let count = form.get(part).and_then(serde_json::Value::as_array).map_or(0, Vec::len);
+        if count > MAX_TRANSFER_POINTS {
+            return Err(TransferReadError::TooManyPoints { part, count });
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

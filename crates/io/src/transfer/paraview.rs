@@ -32,6 +32,9 @@ pub(super) fn parse(map: &Value) -> Result<TransferFile, TransferReadError> {
     let rgb_points = map.get("RGBPoints").ok_or_else(|| {
         problem("holds indexed colours only (no RGBPoints): categories have no order to map values by")
     })?;
+    if is_set(map, "UseLogScale") {
+        return Err(problem("UseLogScale is set: maps over the logarithm of the value are not read"));
+    }
     let mut nodes: Vec<(f64, [f64; 3])> =
         quadruples(rgb_points, "RGBPoints")?.into_iter().map(|[x, r, g, b]| (x, [r, g, b])).collect();
     nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -50,12 +53,17 @@ fn problem(problem: impl Into<String>) -> TransferReadError {
     TransferReadError::ParaView { problem: problem.into() }
 }
 
-fn color_space(map: &Value) -> Result<ColorSpace, TransferReadError> {
-    let wrap = match map.get("HSVWrap") {
-        Some(Value::Bool(wrap)) => *wrap,
+/// Whether a switch, written as a boolean or a number, is on.
+fn is_set(map: &Value, switch: &str) -> bool {
+    match map.get(switch) {
+        Some(Value::Bool(is_on)) => *is_on,
         Some(Value::Number(number)) => number.as_f64() != Some(0.0),
         _ => false,
-    };
+    }
+}
+
+fn color_space(map: &Value) -> Result<ColorSpace, TransferReadError> {
+    let wrap = is_set(map, "HSVWrap");
     match map.get("ColorSpace") {
         None => Ok(ColorSpace::Rgb),
         Some(Value::String(name)) => match name.as_str() {

@@ -13,14 +13,16 @@ const SCALAR_OPACITY: usize = 7;
 const GRADIENT_OPACITY: usize = 8;
 const COLOR: usize = 9;
 
+/// Whether a text starts as these files do: six lines of one number each, and no further one, which is a list.
+pub(super) fn is_volume_property(text: &str) -> bool {
+    let is_number = |line: &str| line.trim().parse::<f64>().is_ok_and(f64::is_finite);
+    let mut lines = text.lines();
+    lines.by_ref().take(SCALAR_OPACITY - 1).filter(|line| is_number(line)).count() == SCALAR_OPACITY - 1
+        && lines.next().is_none_or(|line| line.split_whitespace().count() != 1)
+}
+
 pub(super) fn parse(text: &str) -> Result<TransferFile, TransferReadError> {
     let lines: Vec<&str> = text.lines().take(COLOR).collect();
-    for line in 1..SCALAR_OPACITY {
-        let words: Vec<&str> = line_at(&lines, line)?.split_whitespace().collect();
-        if words.len() != 1 || words[0].parse::<f64>().is_err() {
-            return Err(problem(line, "one number is expected"));
-        }
-    }
     let points = DataPoints {
         opacity: points::<2>(&lines, SCALAR_OPACITY)?.into_iter().map(|[x, alpha]| (x, alpha)).collect(),
         gradient_opacity: points::<2>(&lines, GRADIENT_OPACITY)?.into_iter().map(|[g, f]| (g, f)).collect(),

@@ -20,6 +20,26 @@ fn wheatstones_own_form_is_recognised() {
 }
 
 #[test]
+fn wheatstones_own_form_is_bounded_too() {
+    let with = |part: &str, count: usize| {
+        let point = if part == "color" { "[0, 1, 1, 1]" } else { "[0, 1]" };
+        let points = vec![point; count].join(", ");
+        let others =
+            ["color", "opacity"].into_iter().filter(|&other| other != part).map(|other| match other {
+                "color" => r#""color": "gray""#.to_owned(),
+                _ => r#""opacity": [[0, 1]]"#.to_owned(),
+            });
+        let fields: Vec<String> = others.chain([format!("\"{part}\": [{points}]")]).collect();
+        parse_transfer(&format!("{{\"wheatstone_transfer_function\": 1, {}}}", fields.join(", ")))
+    };
+    for part in ["color", "opacity", "gradient_opacity"] {
+        let message = with(part, MAX_TRANSFER_POINTS + 1).unwrap_err().to_string();
+        assert!(message.starts_with(part) && message.contains("65537"), "{message}");
+        assert!(with(part, MAX_TRANSFER_POINTS).is_ok(), "{part}");
+    }
+}
+
+#[test]
 fn paraview_data_values_become_a_window() {
     let file = paraview(
         r#""ColorSpace": "RGB", "RGBPoints": [-50, 0, 0, 0, 150, 1, 0.5, 0],
@@ -77,6 +97,12 @@ fn paraview_errors_name_the_field() {
     assert!(message(r#""RGBPoints": [0, 1, 1, 7, 1, 0, 0, 0]"#).contains('7'));
     assert!(message(r#""ColorSpace": "XYZ", "RGBPoints": [0, 1, 1, 1]"#).contains("XYZ"));
     assert!(message(r#""IndexedColors": [1, 0, 0]"#).contains("indexed"));
+    for on in ["1", "1.0", "true"] {
+        let points = r#""RGBPoints": [1, 0, 0, 0, 100, 1, 1, 1]"#;
+        assert!(message(&format!(r#""UseLogScale": {on}, {points}"#)).contains("UseLogScale"), "{on}");
+        assert!(paraview(&format!(r#""UseLogScale": 0, {points}"#)).is_ok());
+        assert!(paraview(&format!(r#""UseLogScale": false, {points}"#)).is_ok());
+    }
 }
 
 const BONE: &str = "1\n1\n0.9\n0.1\n0.2\n10\n8 -1000 0 100 0 500 0.6 3000 0.7\n4 0 1 255 1\n\
@@ -100,7 +126,7 @@ fn slicer_volume_properties_are_read() {
 #[test]
 fn slicer_errors_name_the_line() {
     let message = |text: &str| parse_transfer(text).unwrap_err().to_string();
-    assert!(message("1\n1\n0.9").contains("line 4: missing"));
+    assert!(message("1\n1\n0.9\n0.1\n0.2\n10").contains("line 7: missing"));
     assert!(message(&BONE.replace("8 -1000", "9 -1000")).contains("line 7"));
     assert!(message(&BONE.replace("8 -1000", "800000000000 -1000")).contains("line 7"));
     assert!(message(&BONE.replace("3000 0.7", "3000")).contains("line 7: 7 of 8"));
@@ -114,6 +140,12 @@ fn other_files_are_refused() {
     assert!(matches!(parse_transfer("[1, 2]"), Err(TransferReadError::Unrecognised)));
     assert!(matches!(parse_transfer("NRRD0004"), Err(TransferReadError::Unrecognised)));
     assert!(matches!(parse_transfer("{\"a\":"), Err(TransferReadError::Json(_))));
+    let numbers: String = (1..100).map(|i| format!("{i}\n")).collect();
+    for no_preset in
+        ["42", "1 2 3\n4 5 6\n", "1\n1\n0.9", "2024-01-01", "nan", "infinity and beyond", "1, 2\n", &numbers]
+    {
+        assert!(matches!(parse_transfer(no_preset), Err(TransferReadError::Unrecognised)), "{no_preset:?}");
+    }
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(read_transfer(folder.path()), Err(TransferReadError::NotAFile)));
     let path = folder.path().join("map.json");
