@@ -357,7 +357,13 @@ fn phantoms() {
             [Phantom::Sphere, Phantom::MarschnerLobb, Phantom::SheppLogan, Phantom::Ramp, Phantom::SolidBox]
         {
             let volume = phantom.cube(32).unwrap();
-            for (name, settings) in few_settings(&volume) {
+            // Flat faces, which shading rays must not start inside of.
+            let ambient = Settings {
+                mode: Mode::Isosurface { isovalue: 0.4 },
+                shading: Shading::Ambient,
+                ..plain(&volume)
+            };
+            for (name, settings) in few_settings(&volume).into_iter().chain([("iso ambient", ambient)]) {
                 let format = TexelFormat::choose(
                     wheatstone_core::volume::StorageKind::lossless_for(&volume),
                     gpu.capabilities(),

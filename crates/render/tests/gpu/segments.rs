@@ -6,8 +6,9 @@ use crate::tolerance;
 use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Mode, Settings, Shading};
+use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
-use wheatstone_core::volume::{Volume, VoxelType};
+use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels};
 use wheatstone_render::{GpuVolume, Renderer, TexelFormat};
 
 /// Loop iterations per invocation that the renderer never exceeds in one dispatch: above it rays are split.
@@ -89,6 +90,72 @@ fn rays_in_segments_are_whole_rays() {
         }
         eprintln!("segments: largest difference {:.5} ({})", worst.0, worst.1);
         assert!(failures.is_empty(), "{}", failures.join("\n"));
+    });
+}
+
+/// A rod along x of oblique waves: neighbouring rays along it meet visible samples at different times.
+fn long_rod() -> Volume {
+    const DIMS: [usize; 3] = [2600, 6, 6];
+    let value = |i: usize| {
+        let [x, y, z] = [i % DIMS[0], i / DIMS[0] % DIMS[1], i / DIMS[0] / DIMS[1]].map(|i| i as f64);
+        30_000.0 + 20_000.0 * (0.3 * x + 1.1 * y + 0.7 * z).sin()
+    };
+    let voxels = Voxels::U16((0..DIMS.into_iter().product()).map(|i| value(i) as u16).collect());
+    Volume::new(Grid::new(DIMS, spacing([1.0; 3])).unwrap(), voxels).unwrap()
+}
+
+/// So faint that 2,600 voxels do not hide the last one.
+fn faint(opacity: [(f32, f32); 2], gradient_opacity: &[(f32, f32)]) -> TransferFunction {
+    let points =
+        |points: &[(f32, f32)]| points.iter().map(|&(at, alpha)| OpacityPoint { at, alpha }).collect();
+    let color = [(0.0, [0.1, 0.2, 0.9]), (1.0, [1.0, 0.8, 0.3])];
+    TransferFunction::new(color.map(|(at, rgb)| ColorPoint { at, rgb }).to_vec(), points(&opacity))
+        .and_then(|transfer| transfer.with_gradient_opacity(points(gradient_opacity)))
+        .unwrap()
+}
+
+/// Where samples cost much to blend, more loop iterations than those over the samples may count for the drivers' limit:
+/// those of gradients, and of neighbouring rays that are waited for.
+#[test]
+fn long_rays_with_gradients_are_whole_rays() {
+    const SAMPLES_PER_RAY: u64 = 2600 * 32;
+    let volume = long_rod();
+    let plain = |transfer| Settings {
+        sampling_factor: 32.0,
+        early_termination: None,
+        ..Settings::new(volume.full_window(), transfer)
+    };
+    let (everywhere, crests) = ([(0.0, 2e-4), (1.0, 8e-4)], [(0.6, 0.0), (1.0, 3e-3)]);
+    let slopes = [(0.0, 0.2), (0.1, 1.0)];
+    let mut cases = Vec::new();
+    for (visible, opacity) in [("everywhere", everywhere), ("on crests", crests)] {
+        let phong = Settings { shading: Shading::Phong, ..plain(faint(opacity, &[])) };
+        cases.push((format!("phong {visible}"), phong));
+        cases.push((format!("2d {visible}"), plain(faint(opacity, &slopes))));
+    }
+    on_device(|gpu, renderer| {
+        // A single ray, and neighbours that share a processor.
+        for size in [[1, 1], [8, 2]] {
+            let view = look(DVec3::new(1.5, 0.0, 0.0), DVec3::ZERO, orthographic(5e-4, size), size);
+            let rays = u64::from(size[0] * size[1]);
+            for (name, settings) in &cases {
+                let name = format!("{name}, {rays} rays");
+                let parameters = CastParameters::new(settings, &placement(&volume));
+                let cpu = cast_on_cpu(&volume, TexelFormat::R16Unorm, &parameters, &[view]).remove(0);
+                let found = cast_on_gpu(gpu, renderer, &volume, TexelFormat::R16Unorm, settings, &[view])
+                    .unwrap()
+                    .remove(0);
+                for (caster, samples) in [("CPU", cpu.samples), ("GPU", found.samples)] {
+                    // Rounding may put a length just above a whole number.
+                    let all = rays * SAMPLES_PER_RAY..=rays * (SAMPLES_PER_RAY + 1);
+                    assert!(all.contains(&samples), "{name}: {samples} samples on the {caster}");
+                }
+                let alpha = cpu.image.color[0][3];
+                assert!((0.2..0.95).contains(&alpha), "{name}: the whole ray must count: {alpha}");
+                let difference = largest_difference(&cpu, &found);
+                assert!(difference <= tolerance::MANY_SAMPLES, "{name}: largest difference {difference}");
+            }
+        }
     });
 }
 
