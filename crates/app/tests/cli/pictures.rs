@@ -51,6 +51,51 @@ fn every_mode_and_shading_makes_a_picture_that_is_not_empty() {
     }
 }
 
+/// Writes a raw file of 16³ floats: values from 100 to 200 in a ball, and a background.
+fn write_ball(bench: &Bench, name: &str, background: f32) {
+    let value = |i: usize| {
+        let from_middle = |i: usize| (i % 16) as f32 - 7.5;
+        let [x, y, z] = [i, i / 16, i / 256].map(from_middle);
+        let radius = (x * x + y * y + z * z).sqrt();
+        if radius < 6.0 { 200.0 - 16.0 * radius } else { background }
+    };
+    let bytes: Vec<u8> = (0..4096).flat_map(|i| value(i).to_le_bytes()).collect();
+    std::fs::write(bench.path(name), bytes).unwrap();
+}
+
+#[test]
+fn a_background_of_nan_is_as_clear_as_the_low_end_of_the_window() {
+    let bench = Bench::new();
+    write_ball(&bench, "nan_16x16x16_float32.raw", f32::NAN);
+    write_ball(&bench, "low_16x16x16_float32.raw", -50.0);
+    write_ball(&bench, "least_16x16x16_float32.raw", 104.0);
+    let looks: &[&[&str]] = &[
+        &["--tf", "ramp:0..1"],
+        &["--tf", "ramp:0..1", "--shading", "phong", "--preintegrated"],
+        &["--mode", "mip"],
+        &["--mode", "mean"],
+        &["--iso", "0.4"],
+    ];
+    for flags in looks {
+        let render = |name: &str| {
+            let (file, output) = (format!("{name}_16x16x16_float32.raw"), format!("{name}.png"));
+            let place = ["--backend", "cpu", "--size", "32x24", "--window", "-50..250"];
+            let run = bench.run(&[&["render", &file, "-o", &output][..], &place, flags].concat());
+            assert_eq!(run.code, 0, "{flags:?} {name}: {}", run.stderr);
+            run.stderr
+        };
+        assert!(render("nan").contains("window's low end"), "{flags:?}: nothing is said of the NaN voxels");
+        render("low");
+        render("least");
+        let dssim = |other: &str| {
+            let run = bench.run(&["compare", "nan.png", other, "--json"]);
+            run.json()["dssim"].as_f64().unwrap()
+        };
+        assert!(dssim("low.png") < 1e-6, "{flags:?}: {}", dssim("low.png"));
+        assert!(dssim("least.png") > 1e-3, "{flags:?}: {}", dssim("least.png"));
+    }
+}
+
 #[test]
 fn clipping_and_background_show() {
     let bench = Bench::new();
