@@ -1,8 +1,12 @@
 //! PNG files.
 
 use crate::failure::Failure;
+use crate::spec;
 use clap::ValueEnum;
-use image::{DynamicImage, ExtendedColorType, ImageEncoder as _, ImageError, codecs::png::PngEncoder};
+use image::{
+    DynamicImage, ExtendedColorType, ImageDecoder as _, ImageEncoder as _, ImageError,
+    codecs::png::PngEncoder,
+};
 use std::io;
 use std::path::Path;
 use wheatstone_core::image::RgbImage;
@@ -38,7 +42,11 @@ pub(crate) fn write_png(path: &Path, picture: &RgbImage, bits: Bits) -> Result<(
     Ok(())
 }
 
-/// Reads a PNG file of 8 or 16 bits, grey or colour; transparency is put over black.
+/// Most pixels of a picture that is read: both eyes' largest pictures side by side.
+const MOST_PIXELS_READ: u64 = 2 * spec::MOST_PIXELS;
+
+/// Reads a PNG file of 8 or 16 bits, grey or colour; transparency is put over black. Files are not trusted: what their
+/// header tells of their size is checked before anything is decoded.
 pub(crate) fn read_png(path: &Path) -> Result<RgbImage, Failure> {
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
     // Opening a pipe may block, so what the path names is looked at first.
@@ -47,7 +55,14 @@ pub(crate) fn read_png(path: &Path) -> Result<RgbImage, Failure> {
     }
     let mut reader = image::ImageReader::open(path).map_err(|error| bad(&error))?;
     reader.set_format(image::ImageFormat::Png);
-    let decoded = reader.decode().map_err(|error| bad(&error))?;
+    let decoder = reader.into_decoder().map_err(|error| bad(&error))?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MOST_PIXELS_READ {
+        return Err(bad(&format!(
+            "a picture of {width}×{height} pixels: at most {MOST_PIXELS_READ} pixels are read"
+        )));
+    }
+    let decoded = DynamicImage::from_decoder(decoder).map_err(|error| bad(&error))?;
     Ok(over_black(decoded))
 }
 

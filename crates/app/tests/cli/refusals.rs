@@ -131,6 +131,27 @@ fn pictures_of_different_sizes_are_not_compared() {
     assert!(run.stderr.contains("32×24") && run.stderr.contains("8×8"), "{}", run.stderr);
 }
 
+/// A PNG file of 8-bit colour that ends where its pixels would begin; the last word of its header is the checksum.
+fn png_without_pixels(side: u32, checksum: u32) -> Vec<u8> {
+    let sides = [side, side].map(u32::to_be_bytes).concat();
+    let header = [&b"IHDR"[..], &sides, &[8, 2, 0, 0, 0], &checksum.to_be_bytes()].concat();
+    let data = [&[0, 0, 0, 10][..], b"IDAT", &[0x78, 0x9c]].concat();
+    [&b"\x89PNG\r\n\x1a\n"[..], &[0, 0, 0, 13], &header, &data].concat()
+}
+
+#[test]
+fn pictures_too_large_to_decode_are_refused_by_their_header() {
+    let bench = Bench::new();
+    // 2²⁷ pixels are a square of 11,585.2.
+    for (side, checksum, is_too_large) in [(11_585, 0xe2f7_c49e, false), (11_586, 0x8f54_0d33, true)] {
+        std::fs::write(bench.path("large.png"), png_without_pixels(side, checksum)).unwrap();
+        let run = bench.run(&["compare", "large.png", "large.png"]);
+        assert_eq!(run.code, 2, "{}", run.stderr);
+        assert!(run.stderr.starts_with("error: large.png: "), "{}", run.stderr);
+        assert_eq!(run.stderr.contains("at most 134217728 pixels"), is_too_large, "{side}: {}", run.stderr);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_no_picture_and_is_not_waited_for() {
