@@ -15,16 +15,21 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
     while i < end && state.is_finished == 0u {
         let stretch_end = min(i + STRETCH, end);
         while i < stretch_end {
-            var value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
-            while !may_be_visible(value, state.scalar) {
+            var value = 0.0;
+            var is_found = false;
+            loop {
+                value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
+                is_found = may_be_visible(value, state.scalar);
+                if is_found {
+                    break;
+                }
                 state.scalar = value;
                 i++;
                 if i >= stretch_end {
                     break;
                 }
-                value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
             }
-            if i >= stretch_end {
+            if !is_found {
                 break;
             }
             state = blend(ray, i, value, state);
