@@ -94,7 +94,7 @@ impl Grid {
         self.patient_from_index * DAffine3::from_translation(DVec3::splat(-0.5))
     }
 
-    /// Texture space ([0,1]³ over the whole volume) to patient space.
+    /// Texture space (0 to 1 over the whole volume) to patient space.
     pub fn patient_from_texture(&self) -> DAffine3 {
         self.patient_from_voxel() * DAffine3::from_scale(self.dims_vec())
     }

@@ -87,9 +87,13 @@ impl Volume {
         self.non_finite_mask.iter().map(|bits| bits.count_ones() as usize).sum()
     }
 
-    /// Gives the voxels that were NaN or infinite a value, such as the low end of the window. The range stays that
-    /// of the finite voxels.
+    /// Gives the voxels that were NaN or infinite a value, such as the low end of the window; the range then takes it
+    /// in.
     pub fn fill_non_finite(&mut self, value: f64) {
+        if self.non_finite_mask.is_empty() {
+            return;
+        }
+        self.range = (self.range.0.min(value), self.range.1.max(value));
         self.voxels.fill(&self.non_finite_mask, value);
     }
 

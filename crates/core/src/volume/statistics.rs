@@ -117,6 +117,7 @@ mod tests {
         assert_eq!(volume.voxels(), &Voxels::F32(vec![2.0, 2.0, 2.0, 4.0, 2.0]));
         volume.fill_non_finite(-7.0);
         assert_eq!(volume.voxels(), &Voxels::F32(vec![-7.0, 2.0, -7.0, 4.0, -7.0]));
+        assert_eq!(volume.range(), (-7.0, 4.0));
     }
 
     #[test]
