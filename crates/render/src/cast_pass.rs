@@ -1,6 +1,7 @@
 //! The cast pass: pipelines of the kernel's variants, and the dispatch of one piece of a picture.
 
 use crate::gpu::{Gpu, GpuError};
+use crate::pacer::BAND_ROWS;
 use crate::shader::compose;
 use crate::target::Target;
 use crate::uniforms::{CastUniform, ViewUniform};
@@ -9,9 +10,6 @@ use std::num::NonZeroU64;
 use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, DIRECTIONAL_STEPS, SHADOW_SAMPLES};
 use wheatstone_core::scene::{GradientMethod, Mode, Shading};
 use wheatstone_core::transfer::LUT_1D_ENTRIES;
-
-/// Side of a workgroup, pixels; `@workgroup_size` of `cast.wgsl`.
-const WORKGROUP: u32 = 8;
 
 /// Bytes of a `RayState`.
 pub(crate) const RAY_STATE_BYTES: u64 = 32;
@@ -245,7 +243,7 @@ pub(crate) fn dispatch(
         pass.set_bind_group(0, bindings.frame, &[]);
         pass.set_bind_group(1, bindings.volume, &[]);
         pass.set_bind_group(2, bindings.target, &[]);
-        pass.dispatch_workgroups(target.size()[0].div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
+        pass.dispatch_workgroups(target.size()[0].div_ceil(BAND_ROWS), rows.div_ceil(BAND_ROWS), 1);
     }
     gpu.queue.submit([encoder.finish()]);
 }

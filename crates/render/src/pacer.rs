@@ -25,7 +25,7 @@ const SHORTEST_TIMED: Duration = Duration::from_millis(2);
 /// 65,000, summed over nested loops.
 const ITERATION_LIMIT: u32 = 60_000;
 
-/// Rows that a piece is a whole number of: those of a workgroup.
+/// Rows that a piece is a whole number of: the side of a workgroup, `BAND_ROWS` of `cast.wgsl`.
 pub(crate) const BAND_ROWS: u32 = 8;
 
 /// Rays of a band whose samples are counted.

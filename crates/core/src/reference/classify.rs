@@ -114,7 +114,7 @@ impl Classify for Isovalue {
     }
 
     fn log2_transmittance_at<T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
-        let is_in = context.sampler.value_at(position) >= context.parameters.isovalue;
-        if is_in { OPAQUE_LOG2 } else { 0.0 }
+        let value = context.sampler.value_at(position);
+        if Self::may_be_visible(context, value, value) { OPAQUE_LOG2 } else { 0.0 }
     }
 }
