@@ -10,6 +10,7 @@ pub mod metrics;
 pub mod phantom;
 pub mod reference;
 pub mod scene;
+pub mod skip;
 pub mod transfer;
 pub mod view;
 pub mod volume;

@@ -92,12 +92,17 @@ impl Encoding {
         Self { kind, value_per_stored, value_at_zero: if is_native { 0.0 } else { lo } }
     }
 
+    /// The number that stands for a value, before it is rounded to the kind.
+    pub fn stored(&self, value: f64) -> f64 {
+        (value - self.value_at_zero) / self.value_per_stored
+    }
+
     /// Stored numbers of a range of voxels.
     ///
     /// # Panics
     /// If the range is not within the voxels.
     pub fn encode(&self, voxels: &Voxels, range: Range<usize>) -> StoredVoxels {
-        let to_stored = |x: f64| (x - self.value_at_zero) / self.value_per_stored;
+        let to_stored = |x: f64| self.stored(x);
         match (self.kind, voxels) {
             (StorageKind::U8, Voxels::U8(v)) if self.value_at_zero == 0.0 => {
                 StoredVoxels::U8(v[range].to_vec())

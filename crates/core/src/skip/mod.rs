@@ -1,0 +1,29 @@
+//! Empty-space skipping: what of a volume cannot be seen, and how far a ray may leap over it.
+//!
+//! The volume is cut into *blocks*. Once per volume, [`BlockRanges`] holds the interval of the values (and of the gradient
+//! magnitudes) that a trilinear sample in each block can have. Once per change of the settings, [`Visibility`] tells which
+//! intervals can contribute to a picture, [`Occupancy`] which blocks can, and [`SkipMap`] how far each block is from the
+//! nearest one that can. No voxel is read again. A ray then leaps by [`steps_out_of`].
+//!
+//! DM is Deakin and Knackstedt 2020, “Efficient ray casting of volumetric images using distance maps for empty space
+//! skipping”.
+
+mod block_grid;
+mod block_ranges;
+mod block_size;
+mod distance;
+mod extremes;
+mod occupancy;
+mod range_codes;
+mod skip_map;
+mod steps;
+mod visibility;
+
+pub use block_grid::BlockGrid;
+pub use block_ranges::BlockRanges;
+pub use block_size::{BlockSize, SkipError};
+pub use occupancy::{NormalisedRanges, Occupancy};
+pub use range_codes::RangeCodes;
+pub use skip_map::{OCTANTS, SkipMap, Structure};
+pub use steps::steps_out_of;
+pub use visibility::{SecondAxis, Visibility};

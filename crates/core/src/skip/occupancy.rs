@@ -1,0 +1,94 @@
+//! Which blocks can contribute to a picture.
+
+use super::{BlockGrid, BlockRanges, SecondAxis, Visibility};
+use rayon::prelude::*;
+
+/// Blocks that a thread takes at once.
+const BLOCKS_PER_TASK: usize = 1 << 14;
+
+/// Block ranges and the map from their stored numbers to normalised ones.
+#[derive(Debug, Clone, Copy)]
+pub struct NormalisedRanges<'a> {
+    pub(super) ranges: &'a BlockRanges,
+    pub(super) normalised_from_stored: (f64, f64),
+}
+
+/// Which blocks are occupied. In the others no trilinear sample can contribute: not just no voxel, but nothing in the
+/// interval between the smallest and the largest voxel that samples in the block read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Occupancy {
+    grid: BlockGrid,
+    occupied: Vec<bool>,
+}
+
+impl Occupancy {
+    /// Asks for each block whether its intervals can contribute. Without gradient ranges any gradient may occur.
+    ///
+    /// # Panics
+    /// If values and gradients are cut into different blocks.
+    pub fn new(
+        values: NormalisedRanges<'_>,
+        gradients: Option<NormalisedRanges<'_>>,
+        visibility: &Visibility,
+    ) -> Self {
+        let grid = *values.ranges.grid();
+        let columns = visibility.value_entries(values.ranges.codes(), values.normalised_from_stored);
+        let span = |entries: &[[u16; 2]], [lo, hi]: [u16; 2]| {
+            [entries[usize::from(lo)][0], entries[usize::from(hi)][1]]
+        };
+        let intervals = values.ranges.intervals().par_iter().with_min_len(BLOCKS_PER_TASK);
+        let occupied = match (visibility.second_axis(), gradients) {
+            (SecondAxis::Gradient, Some(gradients)) => {
+                assert_eq!(
+                    grid,
+                    *gradients.ranges.grid(),
+                    "values and gradients are cut into the same blocks"
+                );
+                let rows =
+                    visibility.gradient_entries(gradients.ranges.codes(), gradients.normalised_from_stored);
+                intervals
+                    .zip(gradients.ranges.intervals())
+                    .map(|(&value, &gradient)| {
+                        visibility.is_any_visible(span(&columns, value), span(&rows, gradient))
+                    })
+                    .collect()
+            }
+            (SecondAxis::Value, _) => intervals
+                .map(|&value| {
+                    let entries = span(&columns, value);
+                    visibility.is_any_visible(entries, entries)
+                })
+                .collect(),
+            (SecondAxis::None | SecondAxis::Gradient, _) => {
+                let rows = visibility.all_rows();
+                intervals.map(|&value| visibility.is_any_visible(span(&columns, value), rows)).collect()
+            }
+        };
+        Self { grid, occupied }
+    }
+
+    /// An occupancy that is known.
+    ///
+    /// # Panics
+    /// If there is not one flag per block.
+    pub fn from_flags(grid: BlockGrid, occupied: Vec<bool>) -> Self {
+        assert_eq!(occupied.len(), grid.block_count(), "one flag per block");
+        Self { grid, occupied }
+    }
+
+    /// The blocks.
+    pub fn grid(&self) -> &BlockGrid {
+        &self.grid
+    }
+
+    /// Whether each block is occupied, in the order of [`BlockGrid::index`].
+    pub fn occupied(&self) -> &[bool] {
+        &self.occupied
+    }
+
+    /// The occupied part of all blocks.
+    pub fn fraction(&self) -> f64 {
+        let count = self.occupied.iter().filter(|&&is_occupied| is_occupied).count();
+        count as f64 / self.occupied.len() as f64
+    }
+}
