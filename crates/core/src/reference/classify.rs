@@ -1,120 +1,143 @@
 //! Classifiers: from samples to colour and opacity.
 
+use super::context::Context;
 use super::gradient::gradient_at;
-use super::volume::{Sampler, Stored};
-use crate::cast::CastParameters;
-use crate::transfer::{LutEntry, OPAQUE_LOG2};
-use glam::Vec3A;
-
-/// What all parts of a cast may read.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Context<'a, T> {
-    pub(super) sampler: Sampler<'a, T>,
-    pub(super) parameters: &'a CastParameters,
-}
-
-impl<T: Stored> Context<'_, T> {
-    /// Gradient in metric space.
-    pub(super) fn gradient_at(&self, position: Vec3A) -> Vec3A {
-        gradient_at(&self.sampler, self.parameters.gradient, &self.parameters.texture_from_metric, position)
-    }
-}
+use super::lanes::{Lanes, Mask};
+use super::lut::{Entry, lut_at, lut_at_2d};
+use super::vector::Vec3;
+use crate::transfer::OPAQUE_LOG2;
 
 /// A classified sample.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Classified {
+pub(super) struct Classified<L> {
     /// Colour and log2 transmittance of one voxel length.
-    pub(super) entry: LutEntry,
+    pub(super) entry: Entry<L>,
     /// The gradient, if classifying needed it.
-    pub(super) gradient: Option<Vec3A>,
+    pub(super) gradient: Option<Vec3<L>>,
 }
 
 /// A way from samples to colour and opacity.
-pub(super) trait Classify: Copy + Send + Sync {
+pub(super) trait Classify {
     /// Where on the ray, counted in steps from a sample's middle, the value that classifies it is taken.
     const VALUE_OFFSET: f32 = 0.0;
 
     /// Whether a sample may be visible, from its value and the one before it on the ray.
-    fn may_be_visible<T: Stored>(context: &Context<'_, T>, value: f32, previous: f32) -> bool {
+    #[inline(always)]
+    fn may_be_visible<L: Lanes>(context: &Context<'_>, token: L::Token, value: L, previous: L) -> L::Mask {
         let _ = previous;
         let (lo, hi) = context.parameters.lut.visible();
-        value >= lo && value <= hi
+        L::splat(token, lo).le(value) & value.le(L::splat(token, hi))
     }
 
     /// Colour and opacity of a sample.
-    fn classify<T: Stored>(
-        context: &Context<'_, T>,
-        position: Vec3A,
-        value: f32,
-        previous: f32,
-    ) -> Classified;
+    fn classify<L: Lanes>(
+        context: &Context<'_>,
+        token: L::Token,
+        position: Vec3<L>,
+        value: L,
+        previous: L,
+    ) -> Classified<L>;
 
     /// Log2 transmittance of one voxel length at a position, for shading rays.
-    fn log2_transmittance_at<T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
-        let value = context.sampler.value_at(position);
-        if Self::may_be_visible(context, value, value) {
-            Self::classify(context, position, value, value).entry[3]
-        } else {
-            0.0
+    #[inline(always)]
+    fn log2_transmittance_at<L: Lanes>(context: &Context<'_>, token: L::Token, position: Vec3<L>) -> L {
+        let value = context.value_at(token, position);
+        let zero = L::splat(token, 0.0);
+        let is_visible = Self::may_be_visible(context, token, value, value);
+        if !is_visible.any() {
+            return zero;
         }
+        L::select(is_visible, Self::classify(context, token, position, value, value).entry.log2, zero)
     }
 }
 
 /// One-dimensional transfer function.
-#[derive(Clone, Copy)]
 pub(super) struct Value;
 
 impl Classify for Value {
-    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3A, value: f32, _: f32) -> Classified {
-        Classified { entry: context.parameters.lut.at(value), gradient: None }
+    #[inline(always)]
+    fn classify<L: Lanes>(
+        context: &Context<'_>,
+        token: L::Token,
+        _: Vec3<L>,
+        value: L,
+        _: L,
+    ) -> Classified<L> {
+        Classified { entry: lut_at(&context.parameters.lut, token, value), gradient: None }
     }
 }
 
 /// Two-dimensional transfer function of value and gradient magnitude.
-#[derive(Clone, Copy)]
 pub(super) struct ValueGradient;
 
 impl Classify for ValueGradient {
-    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3A, value: f32, _: f32) -> Classified {
-        let gradient = context.gradient_at(position);
-        let entry = context.parameters.lut.at_2d(value, gradient.length().min(1.0));
+    #[inline(always)]
+    fn classify<L: Lanes>(
+        context: &Context<'_>,
+        token: L::Token,
+        position: Vec3<L>,
+        value: L,
+        _: L,
+    ) -> Classified<L> {
+        let gradient = gradient_at(context, token, position);
+        let magnitude = gradient.length_squared().sqrt().min(L::splat(token, 1.0));
+        let entry = lut_at_2d(&context.parameters.lut, token, value, magnitude);
         Classified { entry, gradient: Some(gradient) }
     }
 }
 
 /// One-dimensional transfer function integrated between the values at both ends of a step.
-#[derive(Clone, Copy)]
 pub(super) struct PreIntegrated;
 
 impl Classify for PreIntegrated {
     const VALUE_OFFSET: f32 = 0.5;
 
-    fn may_be_visible<T: Stored>(context: &Context<'_, T>, value: f32, previous: f32) -> bool {
+    #[inline(always)]
+    fn may_be_visible<L: Lanes>(context: &Context<'_>, token: L::Token, value: L, previous: L) -> L::Mask {
         let (lo, hi) = context.parameters.lut.visible();
-        value.max(previous) >= lo && value.min(previous) <= hi
+        L::splat(token, lo).le(value.max(previous)) & value.min(previous).le(L::splat(token, hi))
     }
 
-    fn classify<T: Stored>(context: &Context<'_, T>, _: Vec3A, value: f32, previous: f32) -> Classified {
-        Classified { entry: context.parameters.lut.at_2d(previous, value), gradient: None }
+    #[inline(always)]
+    fn classify<L: Lanes>(
+        context: &Context<'_>,
+        token: L::Token,
+        _: Vec3<L>,
+        value: L,
+        previous: L,
+    ) -> Classified<L> {
+        Classified { entry: lut_at_2d(&context.parameters.lut, token, previous, value), gradient: None }
     }
 }
 
 /// Opaque from the isovalue upwards.
-#[derive(Clone, Copy)]
 pub(super) struct Isovalue;
 
 impl Classify for Isovalue {
-    fn may_be_visible<T: Stored>(context: &Context<'_, T>, value: f32, _: f32) -> bool {
-        value >= context.parameters.isovalue
+    #[inline(always)]
+    fn may_be_visible<L: Lanes>(context: &Context<'_>, token: L::Token, value: L, _: L) -> L::Mask {
+        L::splat(token, context.parameters.isovalue).le(value)
     }
 
-    fn classify<T: Stored>(context: &Context<'_, T>, position: Vec3A, _: f32, _: f32) -> Classified {
-        let [r, g, b] = context.parameters.surface_rgb.to_array();
-        Classified { entry: [r, g, b, OPAQUE_LOG2], gradient: Some(context.gradient_at(position)) }
+    #[inline(always)]
+    fn classify<L: Lanes>(
+        context: &Context<'_>,
+        token: L::Token,
+        position: Vec3<L>,
+        _: L,
+        _: L,
+    ) -> Classified<L> {
+        let rgb = Vec3::splat(token, context.parameters.surface_rgb);
+        Classified {
+            entry: Entry { rgb, log2: L::splat(token, OPAQUE_LOG2) },
+            gradient: Some(gradient_at(context, token, position)),
+        }
     }
 
-    fn log2_transmittance_at<T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
-        let value = context.sampler.value_at(position);
-        if Self::may_be_visible(context, value, value) { OPAQUE_LOG2 } else { 0.0 }
+    #[inline(always)]
+    fn log2_transmittance_at<L: Lanes>(context: &Context<'_>, token: L::Token, position: Vec3<L>) -> L {
+        let value = context.value_at(token, position);
+        let is_in = Self::may_be_visible(context, token, value, value);
+        L::select(is_in, L::splat(token, OPAQUE_LOG2), L::splat(token, 0.0))
     }
 }

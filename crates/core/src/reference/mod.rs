@@ -1,14 +1,25 @@
 //! The reference ray caster: multi-threaded, on the CPU, the truth that the GPU is tested against and the
 //! renderer where no GPU is.
 //!
-//! Each file here is the twin of the WGSL files of the same name in `wheatstone-render`'s `shaders/lib`.
+//! Written once over a lane type: one f64 lane is the truth, sixteen f32 lanes are fast. Each file of a part of the cast
+//! is the twin of the WGSL files of the same name in `wheatstone-render`'s `shaders/lib`.
 
 mod accumulate;
 mod classify;
+mod composite;
+mod context;
+mod extreme_value;
+mod first_hit;
 mod gradient;
+mod lanes;
+mod lanes_exact;
+mod lanes_wide;
+mod lut;
 mod ray;
 mod renderer;
 mod shade;
+mod value_sum;
+mod vector;
 mod volume;
 
 pub use ray::sample_count;

@@ -1,8 +1,10 @@
 //! Rays through texture space: where they meet the visible part of the volume, and where they are sampled.
 
+use super::lanes::Lanes;
+use super::vector::Vec3;
 use crate::cast::CastParameters;
 use crate::view::RayField;
-use glam::{DVec3, Vec3A};
+use glam::DVec3;
 
 /// Direction components nearer to zero than this count as this far from it, so that no division overflows.
 const PARALLEL: f64 = 1e-12;
@@ -11,52 +13,98 @@ const PARALLEL: f64 = 1e-12;
 ///
 /// Sample i is at the middle of step i: `first + i · step`. With n = ⌈L · f⌉ steps over a length of L voxel
 /// lengths (DM Eq. 2 measured in the smallest spacing) a homogeneous volume is integrated exactly.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ray {
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct PixelRay {
     /// Texture position of sample 0.
-    pub(super) first: Vec3A,
+    first: DVec3,
     /// From one sample to the next, texture space.
-    pub(super) step: Vec3A,
+    step: DVec3,
     /// Length of a step, voxel lengths.
-    pub(super) step_length: f32,
+    step_length: f64,
     /// Number of samples; 0 if the ray misses.
     pub(super) sample_count: u32,
     /// Depth of sample 0, metres.
-    pub(super) first_depth_m: f32,
+    first_depth_m: f64,
     /// Depth of a step, metres.
-    pub(super) step_depth_m: f32,
+    step_depth_m: f64,
     /// Unit vector back to the eye, metric space.
-    pub(super) to_eye: Vec3A,
+    to_eye: DVec3,
 }
 
-impl Ray {
+impl PixelRay {
     /// The ray of a pixel; its centre is at (x + ½, y + ½).
-    pub(super) fn of_pixel(rays: &RayField, parameters: &CastParameters, x: u32, y: u32) -> Self {
-        let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    pub(super) fn new(rays: &RayField, parameters: &CastParameters, x: usize, y: usize) -> Self {
+        let (origin, direction) = rays.at(x as f64 + 0.5, y as f64 + 0.5);
         let (near, far) = visible_interval(origin, direction, rays.depth_range_m, parameters);
+        if near >= far {
+            return Self::default();
+        }
         let metric_direction = parameters.metric_from_texture.as_dmat3() * direction;
         let sample_count = samples_between(near, far, metric_direction, parameters);
-        let step_depth = if sample_count > 0 { (far - near) / f64::from(sample_count) } else { 0.0 };
-        let first_depth = near + 0.5 * step_depth;
+        let step_depth_m = if sample_count > 0 { (far - near) / f64::from(sample_count) } else { 0.0 };
+        let first_depth_m = near + 0.5 * step_depth_m;
+        let metres_to_voxel_lengths = metric_direction.length();
         Self {
-            first: (origin + direction * first_depth).as_vec3a(),
-            step: (direction * step_depth).as_vec3a(),
-            step_length: (step_depth * metric_direction.length()) as f32,
+            first: origin + direction * first_depth_m,
+            step: direction * step_depth_m,
+            step_length: step_depth_m * metres_to_voxel_lengths,
             sample_count,
-            first_depth_m: first_depth as f32,
-            step_depth_m: step_depth as f32,
-            to_eye: -metric_direction.normalize_or_zero().as_vec3a(),
+            first_depth_m,
+            step_depth_m,
+            to_eye: -metric_direction / metres_to_voxel_lengths.max(PARALLEL),
+        }
+    }
+}
+
+/// The rays of a packet, in voxel space.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ray<L> {
+    /// Position of sample 0.
+    first: Vec3<L>,
+    /// From one sample to the next.
+    step: Vec3<L>,
+    /// Length of a step, voxel lengths.
+    pub(super) step_length: L,
+    /// Number of samples; 0 if the ray misses.
+    pub(super) sample_count: L,
+    /// Depth of sample 0, metres.
+    first_depth_m: L,
+    /// Depth of a step, metres.
+    step_depth_m: L,
+    /// Unit vector back to the eye, metric space.
+    pub(super) to_eye: Vec3<L>,
+}
+
+impl<L: Lanes> Ray<L> {
+    #[inline(always)]
+    pub(super) fn new(token: L::Token, dims: DVec3, rays: &[PixelRay]) -> Self {
+        let number = |of: fn(&PixelRay) -> f64| L::from_fn(token, |lane| of(&rays[lane]));
+        let vector = |of: fn(&PixelRay) -> DVec3, scale: DVec3| Vec3 {
+            x: L::from_fn(token, |lane| of(&rays[lane]).x * scale.x),
+            y: L::from_fn(token, |lane| of(&rays[lane]).y * scale.y),
+            z: L::from_fn(token, |lane| of(&rays[lane]).z * scale.z),
+        };
+        Self {
+            first: vector(|ray| ray.first, dims),
+            step: vector(|ray| ray.step, dims),
+            step_length: number(|ray| ray.step_length),
+            sample_count: number(|ray| f64::from(ray.sample_count)),
+            first_depth_m: number(|ray| ray.first_depth_m),
+            step_depth_m: number(|ray| ray.step_depth_m),
+            to_eye: vector(|ray| ray.to_eye, DVec3::ONE),
         }
     }
 
-    /// Texture position of a sample; fractional indices lie between samples.
-    pub(super) fn at(&self, index: f32) -> Vec3A {
-        self.first + self.step * index
+    /// Position of a sample; fractional indices lie between samples.
+    #[inline(always)]
+    pub(super) fn at(&self, index: L) -> Vec3<L> {
+        self.step.mul_add(index, self.first)
     }
 
     /// Depth of a sample, metres.
-    pub(super) fn depth_m(&self, index: f32) -> f32 {
-        self.first_depth_m + self.step_depth_m * index
+    #[inline(always)]
+    pub(super) fn depth_m(&self, index: L) -> L {
+        self.step_depth_m.mul_add(index, self.first_depth_m)
     }
 }
 
@@ -96,11 +144,4 @@ fn visible_interval(
         far = far.min(crossing);
     }
     (near, far)
-}
-
-/// Whether a texture position is in the visible part of the volume.
-pub(super) fn is_inside(parameters: &CastParameters, position: Vec3A) -> bool {
-    position.cmpge(parameters.box_lo).all()
-        && position.cmple(parameters.box_hi).all()
-        && Vec3A::from_vec4(parameters.plane).dot(position) + parameters.plane.w >= 0.0
 }

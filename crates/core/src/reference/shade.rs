@@ -1,8 +1,11 @@
 //! Shading of visible samples.
 
-use super::classify::{Classified, Classify, Context};
-use super::ray::{Ray, is_inside};
-use super::volume::Stored;
+use super::classify::{Classified, Classify};
+use super::context::Context;
+use super::gradient::gradient_at;
+use super::lanes::Lanes;
+use super::ray::Ray;
+use super::vector::Vec3;
 use crate::cast::{
     AMBIENT_RADIUS, AMBIENT_SAMPLES, DIRECTIONAL_STEPS, FLAT_SQUARED, PHONG, SHADING_STEP, SHADOW_SAMPLES,
 };
@@ -10,87 +13,151 @@ use crate::scene::Shading;
 use glam::Vec3A;
 
 /// The display-referred colour of a lit sample.
-pub(super) fn shade<C: Classify, T: Stored>(
-    context: &Context<'_, T>,
-    ray: &Ray,
-    position: Vec3A,
-    classified: &Classified,
-) -> Vec3A {
-    let [r, g, b, _] = classified.entry;
-    let rgb = Vec3A::new(r, g, b);
+#[inline(always)]
+pub(super) fn shade<C: Classify, L: Lanes>(
+    context: &Context<'_>,
+    token: L::Token,
+    ray: &Ray<L>,
+    position: Vec3<L>,
+    classified: &Classified<L>,
+) -> Vec3<L> {
+    let rgb = classified.entry.rgb;
     match context.parameters.shading {
         Shading::None => rgb,
-        Shading::Phong => phong(context, ray, position, rgb, classified.gradient),
-        Shading::Shadow => rgb * shadow::<C, T>(context, position),
-        Shading::Ambient => rgb * ambient::<C, T>(context, position),
-        Shading::Directional { .. } => rgb * directional::<C, T>(context, position),
+        Shading::Phong => {
+            let gradient = match classified.gradient {
+                Some(gradient) => gradient,
+                None => gradient_at(context, token, position),
+            };
+            phong(context, token, ray, rgb, gradient)
+        }
+        Shading::Shadow => rgb * shadow::<C, L>(context, token, position),
+        Shading::Ambient => rgb * ambient::<C, L>(context, token, position),
+        Shading::Directional { .. } => {
+            let light = directional::<C, L>(context, token, position);
+            Vec3 { x: rgb.x * light.x, y: rgb.y * light.y, z: rgb.z * light.z }
+        }
     }
 }
 
 /// Two-sided Phong. Where the value does not change there is no surface, and the light falls as if head-on.
-fn phong<T: Stored>(
-    context: &Context<'_, T>,
-    ray: &Ray,
-    position: Vec3A,
-    rgb: Vec3A,
-    gradient: Option<Vec3A>,
-) -> Vec3A {
+#[inline(always)]
+fn phong<L: Lanes>(
+    context: &Context<'_>,
+    token: L::Token,
+    ray: &Ray<L>,
+    rgb: Vec3<L>,
+    gradient: Vec3<L>,
+) -> Vec3<L> {
     let [ambient, diffuse, specular, exponent] = PHONG;
-    let gradient = gradient.unwrap_or_else(|| context.gradient_at(position));
-    if gradient.length_squared() < FLAT_SQUARED {
-        return rgb * (ambient + diffuse);
-    }
-    let normal = gradient.normalize_or_zero();
+    let one = L::splat(token, 1.0);
+    let squared = gradient.length_squared();
+    let flat_squared = L::splat(token, FLAT_SQUARED);
+    let is_flat = squared.lt(flat_squared);
+    let normal = gradient * (one / squared.max(flat_squared).sqrt());
     let to_light = context.parameters.to_light;
-    let to_light = if to_light == Vec3A::ZERO { ray.to_eye } else { to_light };
-    let half_way = (to_light + ray.to_eye).normalize_or_zero();
-    let highlight = specular * normal.dot(half_way).abs().powf(exponent);
-    rgb * (ambient + diffuse * normal.dot(to_light).abs()) + highlight
+    let to_light = if to_light == Vec3A::ZERO { ray.to_eye } else { Vec3::splat(token, to_light) };
+    let between = to_light + ray.to_eye;
+    let half_way = between * (one / between.length_squared().max(L::splat(token, 1e-12)).sqrt());
+    let facing = L::select(is_flat, one, normal.dot(to_light).abs());
+    let glancing = L::select(is_flat, L::splat(token, 0.0), normal.dot(half_way).abs());
+    let highlight = glancing.powi(exponent as u32) * specular;
+    let matte = facing * diffuse + ambient;
+    rgb.mul_add(matte, Vec3 { x: highlight, y: highlight, z: highlight })
 }
 
 /// Log2 transmittance of one voxel length, 0 outside the visible part of the volume.
-fn log2_transmittance_inside<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
-    if is_inside(context.parameters, position) { C::log2_transmittance_at(context, position) } else { 0.0 }
+#[inline(always)]
+fn log2_transmittance_inside<C: Classify, L: Lanes>(
+    context: &Context<'_>,
+    token: L::Token,
+    position: Vec3<L>,
+) -> L {
+    L::outlined(
+        token,
+        #[inline(always)]
+        || {
+            let is_inside = context.is_inside(token, position);
+            let log2 = C::log2_transmittance_at(context, token, position);
+            L::select(is_inside, log2, L::splat(token, 0.0))
+        },
+    )
 }
 
 /// Transmittance towards the light (SP §4.1: 24 samples).
-fn shadow<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
-    let step = context.parameters.shadow_step;
-    let log2: f32 = (1..=SHADOW_SAMPLES)
-        .map(|i| log2_transmittance_inside::<C, T>(context, position + step * i as f32))
-        .sum();
-    (log2 * SHADING_STEP).exp2()
+#[inline(always)]
+fn shadow<C: Classify, L: Lanes>(context: &Context<'_>, token: L::Token, position: Vec3<L>) -> L {
+    let step = Vec3::splat(token, context.parameters.shadow_step * context.sampler.dims());
+    (transmittance_along::<C, L>(context, token, position, step, SHADOW_SAMPLES) * SHADING_STEP).exp2()
 }
 
-/// Mean transmittance to 14 points around the sample (SP §4.1): the axes and the corners of a cube.
-fn ambient<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> f32 {
-    let corner = 1.0 / 3.0_f32.sqrt();
-    let axes = [Vec3A::X, Vec3A::Y, Vec3A::Z].into_iter().flat_map(|axis| [axis, -axis]);
-    let corners = (0..8).map(|i| {
-        let side = |bit: u32| if i & (1 << bit) == 0 { -corner } else { corner };
-        Vec3A::new(side(0), side(1), side(2))
-    });
-    let transmittance = |direction: Vec3A| {
-        let offset = context.parameters.texture_from_metric * (direction * AMBIENT_RADIUS);
-        (log2_transmittance_inside::<C, T>(context, position + offset) * AMBIENT_RADIUS).exp2()
-    };
-    axes.chain(corners).map(transmittance).sum::<f32>() / AMBIENT_SAMPLES as f32
+/// Sum of the log2 transmittances of one voxel length at equal steps from a position.
+#[inline(always)]
+fn transmittance_along<C: Classify, L: Lanes>(
+    context: &Context<'_>,
+    token: L::Token,
+    position: Vec3<L>,
+    step: Vec3<L>,
+    count: u32,
+) -> L {
+    let mut log2 = L::splat(token, 0.0);
+    for i in 1..=count {
+        let along = step.mul_add(L::splat(token, i as f32), position);
+        log2 += log2_transmittance_inside::<C, L>(context, token, along);
+    }
+    log2
+}
+
+/// Directions from a sample to the points of a sphere that ambient occlusion looks at: the axes and the corners of a
+/// cube.
+const AMBIENT_DIRECTIONS: [Vec3A; AMBIENT_SAMPLES as usize] = {
+    const C: f32 = 0.577_350_3;
+    [
+        Vec3A::X,
+        Vec3A::NEG_X,
+        Vec3A::Y,
+        Vec3A::NEG_Y,
+        Vec3A::Z,
+        Vec3A::NEG_Z,
+        Vec3A::new(-C, -C, -C),
+        Vec3A::new(C, -C, -C),
+        Vec3A::new(-C, C, -C),
+        Vec3A::new(C, C, -C),
+        Vec3A::new(-C, -C, C),
+        Vec3A::new(C, -C, C),
+        Vec3A::new(-C, C, C),
+        Vec3A::new(C, C, C),
+    ]
+};
+
+/// Mean transmittance to 14 points around the sample (SP §4.1).
+#[inline(always)]
+fn ambient<C: Classify, L: Lanes>(context: &Context<'_>, token: L::Token, position: Vec3<L>) -> L {
+    let mut sum = L::splat(token, 0.0);
+    for direction in AMBIENT_DIRECTIONS {
+        let offset = Vec3::splat(token, context.voxel_from_metric * (direction * AMBIENT_RADIUS));
+        let log2 = log2_transmittance_inside::<C, L>(context, token, position + offset);
+        sum += (log2 * AMBIENT_RADIUS).exp2();
+    }
+    sum * (1.0 / AMBIENT_SAMPLES as f32)
 }
 
 /// Coloured light from each direction, traced for 4 steps (SP Fig. 9), so weighted that no occlusion is white.
-fn directional<C: Classify, T: Stored>(context: &Context<'_, T>, position: Vec3A) -> Vec3A {
+#[inline(always)]
+fn directional<C: Classify, L: Lanes>(context: &Context<'_>, token: L::Token, position: Vec3<L>) -> Vec3<L> {
     let directions = &context.parameters.directions;
     if directions.is_empty() {
-        return Vec3A::ONE;
+        return Vec3::splat(token, Vec3A::ONE);
     }
-    let (mut lit, mut unoccluded) = (Vec3A::ZERO, Vec3A::ZERO);
+    let mut lit = Vec3::splat(token, Vec3A::ZERO);
+    let mut unoccluded = Vec3A::ZERO;
     for &direction in directions {
-        let step = context.parameters.texture_from_metric * (direction * SHADING_STEP);
-        let log2: f32 = (1..=DIRECTIONAL_STEPS)
-            .map(|i| log2_transmittance_inside::<C, T>(context, position + step * i as f32))
-            .sum();
-        lit += direction.abs() * (log2 * SHADING_STEP).exp2();
+        let step = Vec3::splat(token, context.voxel_from_metric * (direction * SHADING_STEP));
+        let log2 = transmittance_along::<C, L>(context, token, position, step, DIRECTIONAL_STEPS);
+        let light = Vec3::splat(token, direction.abs());
+        lit = light.mul_add((log2 * SHADING_STEP).exp2(), lit);
         unoccluded += direction.abs();
     }
-    lit / unoccluded.max(Vec3A::splat(1e-6))
+    let share = unoccluded.max(Vec3A::splat(1e-6)).recip();
+    Vec3 { x: lit.x * share.x, y: lit.y * share.y, z: lit.z * share.z }
 }

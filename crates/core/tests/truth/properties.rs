@@ -164,12 +164,13 @@ proptest! {
         } else {
             Caster::new(&volume)
         };
-        let cast = caster.cast(&parameters, &[view]).remove(0);
-        if let Err(reason) = check(&cast, &view) {
-            prop_assert!(false, "{}", reason);
-        }
         let rays = u64::from(view.size[0]) * u64::from(view.size[1]);
-        prop_assert!(cast.samples <= rays * u64::from(parameters.most_samples_per_ray()));
+        for cast in [caster.cast(&parameters, &[view]).remove(0), caster.cast_exactly(&parameters, &[view]).remove(0)] {
+            if let Err(reason) = check(&cast, &view) {
+                prop_assert!(false, "{}", reason);
+            }
+            prop_assert!(cast.samples <= rays * u64::from(parameters.most_samples_per_ray()));
+        }
     }
 }
 

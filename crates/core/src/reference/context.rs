@@ -1,0 +1,55 @@
+//! What all parts of a cast may read.
+
+use super::lanes::Lanes;
+use super::vector::Vec3;
+use super::volume::Sampler;
+use crate::cast::CastParameters;
+use glam::{Mat3, Vec3A};
+
+/// The volume and the settings, with what they amount to in voxel space.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Context<'a> {
+    pub(super) sampler: Sampler<'a>,
+    pub(super) parameters: &'a CastParameters,
+    /// Low corner of the visible box.
+    box_lo: Vec3A,
+    /// High corner of the visible box.
+    box_hi: Vec3A,
+    /// Normal of the visible half-space: `normal · p + parameters.plane.w ≥ 0`.
+    plane_normal: Vec3A,
+    /// Vectors in metric space to voxel space.
+    pub(super) voxel_from_metric: Mat3,
+    /// Gradients in voxel space to metric space.
+    pub(super) metric_from_voxel_gradient: Mat3,
+}
+
+impl<'a> Context<'a> {
+    pub(super) fn new(sampler: Sampler<'a>, parameters: &'a CastParameters) -> Self {
+        let dims = sampler.dims();
+        let voxel_from_metric = Mat3::from_diagonal(dims.into()) * parameters.texture_from_metric;
+        Self {
+            sampler,
+            parameters,
+            box_lo: parameters.box_lo * dims,
+            box_hi: parameters.box_hi * dims,
+            plane_normal: Vec3A::from_vec4(parameters.plane) / dims,
+            voxel_from_metric,
+            metric_from_voxel_gradient: voxel_from_metric.transpose(),
+        }
+    }
+
+    /// The normalised value at a position in voxel space.
+    #[inline(always)]
+    pub(super) fn value_at<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> L {
+        self.sampler.value_at(token, position)
+    }
+
+    /// Whether a position is in the visible part of the volume.
+    #[inline(always)]
+    pub(super) fn is_inside<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> L::Mask {
+        let height = Vec3::splat(token, self.plane_normal).dot(position) + self.parameters.plane.w;
+        Vec3::splat(token, self.box_lo).le(position)
+            & position.le(Vec3::splat(token, self.box_hi))
+            & L::splat(token, 0.0).le(height)
+    }
+}

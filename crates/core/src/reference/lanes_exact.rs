@@ -1,0 +1,145 @@
+//! One f64 lane: the truth.
+
+use super::lanes::{Lanes, Mask};
+use super::volume::Stored;
+use crate::transfer::LutEntry;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
+
+/// A packet of one ray, in double precision.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(super) struct Exact(f64);
+
+impl Mask for bool {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+}
+
+impl Lanes for Exact {
+    type Token = ();
+    type Mask = bool;
+    type Index = usize;
+    const PACKET: [usize; 2] = [1, 1];
+
+    fn outlined<R>((): (), part: impl FnOnce() -> R) -> R {
+        part()
+    }
+
+    fn splat((): (), value: f32) -> Self {
+        Self(f64::from(value))
+    }
+
+    fn from_fn((): (), mut value: impl FnMut(usize) -> f64) -> Self {
+        Self(value(0))
+    }
+
+    fn lane(self, _: usize) -> f32 {
+        self.0 as f32
+    }
+
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
+
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    fn exp2(self) -> Self {
+        Self(self.0.exp2())
+    }
+
+    fn floor(self) -> Self {
+        Self(self.0.floor())
+    }
+
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+
+    fn normalised(stored: Self, scale: f32, offset: f32) -> Self {
+        Self(f64::from((stored.0 as f32 * scale + offset).clamp(0.0, 1.0)))
+    }
+
+    fn to_index(self) -> usize {
+        self.0 as usize
+    }
+
+    fn to_array_index(coordinates: [Self; 3], row: usize, slice: usize) -> usize {
+        let [x, y, z] = coordinates.map(Self::to_index);
+        x + y * row + z * slice
+    }
+
+    fn neighbours<T: Stored>((): (), voxels: &[T], index: usize, row: usize, slice: usize) -> [[Self; 2]; 4] {
+        [0, row, slice, slice + row].map(|start| {
+            let at = index + start;
+            [voxels[at], voxels[at + 1]].map(|v| Self(v.to_f64()))
+        })
+    }
+
+    fn entries((): (), table: &[LutEntry], color_at: usize, log2_at: usize) -> ([Self; 3], [Self; 2]) {
+        let [r, g, b, _] = table[color_at];
+        let log2 = [table[log2_at][3], table[log2_at + 1][3]];
+        ([r, g, b].map(|c| Self(f64::from(c))), log2.map(|c| Self(f64::from(c))))
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident),*) => {
+        $(impl $trait for Exact {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+
+        impl $trait<f32> for Exact {
+            type Output = Self;
+            fn $method(self, other: f32) -> Self {
+                Self(self.0.$method(f64::from(other)))
+            }
+        })*
+    };
+}
+
+operators!(Add add, Sub sub, Mul mul, Div div);
+
+impl Neg for Exact {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl AddAssign for Exact {
+    fn add_assign(&mut self, other: Self) {
+        self.0 += other.0;
+    }
+}
+
+impl MulAssign for Exact {
+    fn mul_assign(&mut self, other: Self) {
+        self.0 *= other.0;
+    }
+}
