@@ -1,8 +1,8 @@
 //! What trilinear samples in each block can read.
 
-use super::extremes::extremes;
+use super::extremes::Extremes;
 use super::{BlockGrid, BlockSize, NormalisedRanges, RangeCodes};
-use crate::volume::{Encoding, StorageKind, StoredVoxels, Volume};
+use crate::volume::{Encoding, StorageKind, StoredVoxels, Volume, Voxels};
 use rayon::prelude::*;
 
 /// For each block the interval of the stored numbers of its voxels and of the halo, one voxel around it: no trilinear
@@ -19,30 +19,18 @@ impl BlockRanges {
     pub fn of_values(volume: &Volume, kind: StorageKind, block_size: BlockSize) -> Self {
         let grid = BlockGrid::new(volume.grid().dims(), block_size);
         let codes = RangeCodes::of_values(volume, kind);
-        let encoding = Encoding::new(volume, kind);
-        let slice = grid.volume_dims()[0] * grid.volume_dims()[1];
-        let stored = |slices: std::ops::Range<usize>| {
-            encoding.encode(volume.voxels(), slices.start * slice..slices.end * slice)
-        };
-        let intervals = match kind {
-            StorageKind::U8 => extremes(&grid, |slices| match stored(slices) {
-                StoredVoxels::U8(v) => v,
-                _ => Vec::new(),
-            })
-            .into_par_iter()
-            .map(|interval: [u8; 2]| interval.map(u16::from))
-            .collect(),
-            StorageKind::U16 => extremes(&grid, |slices| match stored(slices) {
-                StoredVoxels::U16(v) => v,
-                _ => Vec::new(),
-            }),
-            StorageKind::F32 => extremes(&grid, |slices| match stored(slices) {
-                StoredVoxels::F32(v) => v,
-                _ => Vec::new(),
-            })
-            .into_par_iter()
-            .map(|interval| codes.outward(interval))
-            .collect(),
+        let [lo, hi] = extremes_of_values(volume.voxels(), &grid);
+        // Encoding keeps the order, so that the extremes can be encoded instead of all voxels.
+        let encode = |extremes: &Voxels| Encoding::new(volume, kind).encode(extremes, 0..extremes.len());
+        let intervals = match (encode(&lo), encode(&hi)) {
+            (StoredVoxels::U8(lo), StoredVoxels::U8(hi)) => {
+                zipped(lo, hi, |interval| interval.map(u16::from))
+            }
+            (StoredVoxels::U16(lo), StoredVoxels::U16(hi)) => zipped(lo, hi, |interval| interval),
+            (StoredVoxels::F32(lo), StoredVoxels::F32(hi)) => {
+                zipped(lo, hi, |interval| codes.outward(interval))
+            }
+            _ => unreachable!("both are encoded alike"),
         };
         Self { grid, codes, intervals }
     }
@@ -72,4 +60,27 @@ impl BlockRanges {
     pub fn normalised(&self, normalised_from_stored: (f64, f64)) -> NormalisedRanges<'_> {
         NormalisedRanges { ranges: self, normalised_from_stored }
     }
+}
+
+/// Smallest and largest voxel that each block reads.
+fn extremes_of_values(voxels: &Voxels, grid: &BlockGrid) -> [Voxels; 2] {
+    macro_rules! of_each_type {
+        ($($variant:ident)*) => {
+            match voxels {
+                $(Voxels::$variant(v) => {
+                    let Extremes { lo, hi } = Extremes::new(grid, v);
+                    [Voxels::$variant(lo), Voxels::$variant(hi)]
+                })*
+            }
+        };
+    }
+    of_each_type!(U8 I8 U16 I16 U32 I32 F32 F64)
+}
+
+fn zipped<T: Send>(
+    lo: Vec<T>,
+    hi: Vec<T>,
+    to_codes: impl Fn([T; 2]) -> [u16; 2] + Sync + Send,
+) -> Vec<[u16; 2]> {
+    lo.into_par_iter().zip(hi).map(|(lo, hi)| to_codes([lo, hi])).collect()
 }

@@ -4,64 +4,99 @@ use super::BlockGrid;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Layers of blocks that a thread takes at once, so that slices on the border of two layers are fetched less often.
-const LAYERS: usize = 4;
-
-/// Smallest and largest of the voxels that each block reads. `slices` fetches whole slices of the volume.
-pub(super) fn extremes<T, S>(grid: &BlockGrid, slices: impl Fn(Range<usize>) -> S + Sync) -> Vec<[T; 2]>
-where
-    T: Copy + PartialOrd + Send + Sync,
-    S: AsRef<[T]>,
-{
-    let [width, height, _] = grid.volume_dims();
-    let layers = grid.dims()[2];
-    let of_layers = |first: usize| {
-        let end = (first + LAYERS).min(layers);
-        let fetched = grid.voxels_read(2, first).start..grid.voxels_read(2, end - 1).end;
-        let voxels = slices(fetched.clone());
-        let mut found = Vec::with_capacity((end - first) * grid.dims()[0] * grid.dims()[1]);
-        for layer in first..end {
-            let read = grid.voxels_read(2, layer);
-            let size = width * height;
-            let of_layer = (read.start - fetched.start) * size..(read.end - fetched.start) * size;
-            append_layer(grid, &voxels.as_ref()[of_layer], &mut found);
-        }
-        found
-    };
-    (0..layers).into_par_iter().step_by(LAYERS).flat_map_iter(of_layers).collect()
+/// The smallest and the largest of the voxels that each block reads.
+#[derive(Debug)]
+pub(super) struct Extremes<T> {
+    pub(super) lo: Vec<T>,
+    pub(super) hi: Vec<T>,
 }
 
-/// Reduces the slices that a layer of blocks reads: along z and y row by row, then along x.
-fn append_layer<T: Copy + PartialOrd>(grid: &BlockGrid, slices: &[T], found: &mut Vec<[T; 2]>) {
-    let [width, height, _] = grid.volume_dims();
-    // Of each row, over all slices.
-    let (mut lo, mut hi) = (slices[..width * height].to_vec(), slices[..width * height].to_vec());
-    for slice in slices.chunks_exact(width * height).skip(1) {
-        widen(&mut lo, &mut hi, slice, slice);
+impl<T: Copy + PartialOrd + Send + Sync> Extremes<T> {
+    /// Of the blocks of a grid over the voxels that it was made for.
+    pub(super) fn new(grid: &BlockGrid, voxels: &[T]) -> Self {
+        let layer = grid.dims()[0] * grid.dims()[1];
+        let mut all =
+            Self { lo: vec![voxels[0]; grid.block_count()], hi: vec![voxels[0]; grid.block_count()] };
+        let layers = all.lo.par_chunks_mut(layer).zip(all.hi.par_chunks_mut(layer)).enumerate();
+        layers.for_each(|(z, (lo, hi))| fill_layer(grid, voxels, grid.voxels_read(2, z), lo, hi));
+        all
     }
-    for block_y in 0..grid.dims()[1] {
-        let rows = grid.voxels_read(1, block_y);
-        let row = |y: usize| y * width..(y + 1) * width;
-        let (mut row_lo, mut row_hi) = (lo[row(rows.start)].to_vec(), hi[row(rows.start)].to_vec());
-        for y in rows.skip(1) {
-            widen(&mut row_lo, &mut row_hi, &lo[row(y)], &hi[row(y)]);
-        }
-        found.extend((0..grid.dims()[0]).map(|block_x| {
-            let columns = grid.voxels_read(0, block_x);
-            let smallest = row_lo[columns.clone()].iter().copied().reduce(lesser);
-            let largest = row_hi[columns.clone()].iter().copied().reduce(greater);
-            [smallest.unwrap_or(row_lo[columns.start]), largest.unwrap_or(row_hi[columns.start])]
-        }));
+
+    fn rows_with_capacity(capacity: usize) -> Self {
+        Self { lo: Vec::with_capacity(capacity), hi: Vec::with_capacity(capacity) }
     }
 }
 
-/// Widens intervals, element by element.
-fn widen<T: Copy + PartialOrd>(lo: &mut [T], hi: &mut [T], other_lo: &[T], other_hi: &[T]) {
-    for (lo, &other) in lo.iter_mut().zip(other_lo) {
-        *lo = lesser(*lo, other);
+/// Finds those of a layer of blocks, along z, then y, then x: each stage leaves less to the next.
+fn fill_layer<T: Copy + PartialOrd + Send + Sync>(
+    grid: &BlockGrid,
+    voxels: &[T],
+    slices: Range<usize>,
+    lo: &mut [T],
+    hi: &mut [T],
+) {
+    let [width, height, _] = grid.volume_dims();
+    let blocks_x = grid.dims()[0];
+    let side = grid.block_size().sides()[0] as usize;
+    let mut plane = Extremes::rows_with_capacity(width * height);
+    for y in 0..height {
+        let rows = slices.clone().map(|slice| &voxels[(slice * height + y) * width..][..width]);
+        append_extreme(&mut plane.lo, rows.clone(), lesser);
+        append_extreme(&mut plane.hi, rows, greater);
     }
-    for (hi, &other) in hi.iter_mut().zip(other_hi) {
-        *hi = greater(*hi, other);
+    let mut row = Extremes::rows_with_capacity(width);
+    let mut padded = Vec::with_capacity(blocks_x * side + 2);
+    let blocks = lo.chunks_exact_mut(blocks_x).zip(hi.chunks_exact_mut(blocks_x));
+    for (block_y, (lo, hi)) in blocks.enumerate() {
+        let rows = grid.voxels_read(1, block_y).map(|y| y * width..(y + 1) * width);
+        row.lo.clear();
+        row.hi.clear();
+        append_extreme(&mut row.lo, rows.clone().map(|row| &plane.lo[row]), lesser);
+        append_extreme(&mut row.hi, rows.map(|row| &plane.hi[row]), greater);
+        fill_row(lo, &row.lo, side, &mut padded, lesser);
+        fill_row(hi, &row.hi, side, &mut padded, greater);
+    }
+}
+
+/// Appends the extreme of each column of some rows.
+fn append_extreme<'a, T: Copy + 'a>(
+    to: &mut Vec<T>,
+    mut rows: impl Iterator<Item = &'a [T]>,
+    extreme: impl Fn(T, T) -> T,
+) {
+    let start = to.len();
+    to.extend_from_slice(rows.next().unwrap_or_default());
+    for row in rows {
+        for (so_far, &number) in to[start..].iter_mut().zip(row) {
+            *so_far = extreme(*so_far, number);
+        }
+    }
+}
+
+/// Finds the extremes of what a row of blocks reads of a row of voxels.
+fn fill_row<T: Copy>(
+    blocks: &mut [T],
+    voxels: &[T],
+    side: usize,
+    padded: &mut Vec<T>,
+    extreme: impl Fn(T, T) -> T,
+) {
+    // The halo before the first block and after the last is its outermost voxel.
+    padded.clear();
+    padded.push(voxels[0]);
+    padded.extend_from_slice(voxels);
+    padded.resize(blocks.len() * side + 2, voxels[voxels.len() - 1]);
+    // Each doubling makes of extremes of `reach` neighbours those of twice as many.
+    let window = side + 2;
+    let mut reach = 1;
+    while 2 * reach <= window {
+        for i in 0..padded.len() - reach {
+            padded[i] = extreme(padded[i], padded[i + reach]);
+        }
+        reach *= 2;
+    }
+    for (block, first) in blocks.iter_mut().zip((0..).step_by(side)) {
+        *block = extreme(padded[first], padded[first + window - reach]);
     }
 }
 

@@ -6,8 +6,8 @@ use crate::volume::{Encoding, StorageKind, Volume};
 /// of three f32 interpolations `a + (b − a)·t` by at most 1½ ulp. (Between whole numbers of 16 bits it never does.)
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
-/// How the ends of intervals of stored numbers are written as 16-bit codes: `stored = code · stored_per_code +
-/// stored_at_zero`. Whole numbers of 8 or 16 bits are their own codes; floats are rounded outward.
+/// How the ends of intervals of stored numbers are written as 16-bit codes: `stored = min(code ·
+/// stored_per_code + stored_at_zero, largest_stored)`. Whole numbers of 8 or 16 bits are their own codes; floats are rounded outward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RangeCodes {
     /// How many codes there are.
@@ -16,6 +16,8 @@ pub struct RangeCodes {
     pub stored_per_code: f32,
     /// Stored number of code 0.
     pub stored_at_zero: f32,
+    /// Stored number of the last code.
+    pub largest_stored: f32,
     /// How far rounding may carry an interpolated number out of the interval of a block that is not of one value.
     pub rounding: f32,
 }
@@ -36,7 +38,13 @@ impl RangeCodes {
 
     /// Whole numbers below a count, which stand for themselves.
     pub(super) fn whole_numbers(count: usize) -> Self {
-        Self { count, stored_per_code: 1.0, stored_at_zero: 0.0, rounding: 0.0 }
+        Self {
+            count,
+            stored_per_code: 1.0,
+            stored_at_zero: 0.0,
+            largest_stored: (count - 1) as f32,
+            rounding: 0.0,
+        }
     }
 
     /// Floats from `lo` to `hi`, both of which can be written.
@@ -46,9 +54,10 @@ impl RangeCodes {
             count,
             stored_per_code: (hi - lo) / (count - 1) as f32,
             stored_at_zero: lo,
+            largest_stored: hi,
             rounding: ROUNDING * lo.abs().max(hi.abs()),
         };
-        while codes.stored(u16::MAX) < hi {
+        while f32::from(u16::MAX) * codes.stored_per_code + lo < hi {
             codes.stored_per_code = codes.stored_per_code.next_up();
         }
         codes
@@ -56,7 +65,7 @@ impl RangeCodes {
 
     /// The number that a code stands for.
     pub fn stored(&self, code: u16) -> f32 {
-        f32::from(code) * self.stored_per_code + self.stored_at_zero
+        (f32::from(code) * self.stored_per_code + self.stored_at_zero).min(self.largest_stored)
     }
 
     /// The smallest number that an interval from this code upwards stands for.
@@ -82,7 +91,7 @@ impl RangeCodes {
 
     /// The last code of a number that is not above `x`; the first if there is none.
     fn at_most(&self, x: f32) -> u16 {
-        let mut code = self.position(x).floor() as u16;
+        let mut code = self.position(x).ceil() as u16;
         while code > 0 && self.stored(code) > x {
             code -= 1;
         }
@@ -91,7 +100,7 @@ impl RangeCodes {
 
     /// The first code of a number that is not below `x`; the last if there is none.
     fn at_least(&self, x: f32) -> u16 {
-        let mut code = self.position(x).ceil() as u16;
+        let mut code = self.position(x).floor() as u16;
         while code < u16::MAX && self.stored(code) < x {
             code += 1;
         }
