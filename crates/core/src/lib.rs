@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod cast;
+pub mod gradient_map;
 pub mod image;
 pub mod metrics;
 pub mod phantom;

@@ -2,6 +2,7 @@
 
 use super::extremes::Extremes;
 use super::{BlockGrid, BlockSize, NormalisedRanges, RangeCodes};
+use crate::gradient_map::GradientMap;
 use crate::volume::{Encoding, StorageKind, StoredVoxels, Volume, Voxels};
 use rayon::prelude::*;
 
@@ -22,17 +23,16 @@ impl BlockRanges {
         let [lo, hi] = extremes_of_values(volume.voxels(), &grid);
         // Encoding keeps the order, so that the extremes can be encoded instead of all voxels.
         let encode = |extremes: &Voxels| Encoding::new(volume, kind).encode(extremes, 0..extremes.len());
-        let intervals = match (encode(&lo), encode(&hi)) {
-            (StoredVoxels::U8(lo), StoredVoxels::U8(hi)) => {
-                zipped(lo, hi, |interval| interval.map(u16::from))
-            }
-            (StoredVoxels::U16(lo), StoredVoxels::U16(hi)) => zipped(lo, hi, |interval| interval),
-            (StoredVoxels::F32(lo), StoredVoxels::F32(hi)) => {
-                zipped(lo, hi, |interval| codes.outward(interval))
-            }
-            _ => unreachable!("both are encoded alike"),
-        };
+        let intervals = intervals(encode(&lo), encode(&hi), &codes);
         Self { grid, codes, intervals }
+    }
+
+    /// The intervals of a map's gradient magnitudes; the stored numbers are the map's codes.
+    pub fn of_gradients(map: &GradientMap, block_size: BlockSize) -> Self {
+        let grid = BlockGrid::new(map.dims(), block_size);
+        let codes = RangeCodes::of_gradients(map.depth());
+        let [lo, hi] = extremes_of_stored(map.codes(), &grid);
+        Self { grid, codes, intervals: intervals(lo, hi, &codes) }
     }
 
     /// The blocks.
@@ -75,6 +75,31 @@ fn extremes_of_values(voxels: &Voxels, grid: &BlockGrid) -> [Voxels; 2] {
         };
     }
     of_each_type!(U8 I8 U16 I16 U32 I32 F32 F64)
+}
+
+/// Smallest and largest stored number that each block reads.
+fn extremes_of_stored(stored: &StoredVoxels, grid: &BlockGrid) -> [StoredVoxels; 2] {
+    macro_rules! of_each_kind {
+        ($($variant:ident)*) => {
+            match stored {
+                $(StoredVoxels::$variant(v) => {
+                    let Extremes { lo, hi } = Extremes::new(grid, v);
+                    [StoredVoxels::$variant(lo), StoredVoxels::$variant(hi)]
+                })*
+            }
+        };
+    }
+    of_each_kind!(U8 U16 F32)
+}
+
+/// Codes of the smallest and the largest numbers, which are stored alike.
+fn intervals(lo: StoredVoxels, hi: StoredVoxels, codes: &RangeCodes) -> Vec<[u16; 2]> {
+    match (lo, hi) {
+        (StoredVoxels::U8(lo), StoredVoxels::U8(hi)) => zipped(lo, hi, |interval| interval.map(u16::from)),
+        (StoredVoxels::U16(lo), StoredVoxels::U16(hi)) => zipped(lo, hi, |interval| interval),
+        (StoredVoxels::F32(lo), StoredVoxels::F32(hi)) => zipped(lo, hi, |interval| codes.outward(interval)),
+        _ => unreachable!("the smallest and the largest numbers are stored alike"),
+    }
 }
 
 fn zipped<T: Send>(

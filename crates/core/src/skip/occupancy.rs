@@ -32,10 +32,7 @@ impl Occupancy {
         visibility: &Visibility,
     ) -> Self {
         let grid = *values.ranges.grid();
-        let columns = visibility.value_entries(values.ranges.codes(), values.normalised_from_stored);
-        let span = |entries: &[[u16; 2]], [lo, hi]: [u16; 2]| {
-            [entries[usize::from(lo)][0], entries[usize::from(hi)][1]]
-        };
+        let (codes, map) = (values.ranges.codes(), values.normalised_from_stored);
         let intervals = values.ranges.intervals().par_iter().with_min_len(BLOCKS_PER_TASK);
         let occupied = match (visibility.second_axis(), gradients) {
             (SecondAxis::Gradient, Some(gradients)) => {
@@ -44,24 +41,19 @@ impl Occupancy {
                     *gradients.ranges.grid(),
                     "values and gradients are cut into the same blocks"
                 );
+                let columns = visibility.value_entries(codes, map);
                 let rows =
                     visibility.gradient_entries(gradients.ranges.codes(), gradients.normalised_from_stored);
                 intervals
                     .zip(gradients.ranges.intervals())
                     .map(|(&value, &gradient)| {
-                        visibility.is_any_visible(span(&columns, value), span(&rows, gradient))
+                        visibility.is_any_visible(spanned(&columns, value), spanned(&rows, gradient))
                     })
                     .collect()
             }
-            (SecondAxis::Value, _) => intervals
-                .map(|&value| {
-                    let entries = span(&columns, value);
-                    visibility.is_any_visible(entries, entries)
-                })
-                .collect(),
-            (SecondAxis::None | SecondAxis::Gradient, _) => {
-                let rows = visibility.all_rows();
-                intervals.map(|&value| visibility.is_any_visible(span(&columns, value), rows)).collect()
+            _ => {
+                let occupied_from = visibility.occupied_from(codes, map);
+                intervals.map(|&[lo, hi]| u32::from(hi) >= occupied_from[usize::from(lo)]).collect()
             }
         };
         Self { grid, occupied }
@@ -91,4 +83,9 @@ impl Occupancy {
         let count = self.occupied.iter().filter(|&&is_occupied| is_occupied).count();
         count as f64 / self.occupied.len() as f64
     }
+}
+
+/// The entries that an interval of codes falls on.
+fn spanned(entries: &[[u16; 2]], [lo, hi]: [u16; 2]) -> [u16; 2] {
+    [entries[usize::from(lo)][0], entries[usize::from(hi)][1]]
 }

@@ -1,5 +1,6 @@
 //! Codes: 16-bit numbers for the ends of an interval of stored numbers.
 
+use crate::gradient_map::GradientDepth;
 use crate::volume::{Encoding, StorageKind, Volume};
 
 /// Times the largest number of a block, how far rounding may carry an interpolated number out of the block's interval: each
@@ -36,8 +37,13 @@ impl RangeCodes {
         }
     }
 
+    /// The codes of gradient magnitudes: the map's own.
+    pub fn of_gradients(depth: GradientDepth) -> Self {
+        Self::whole_numbers(usize::from(depth.largest_code()) + 1)
+    }
+
     /// Whole numbers below a count, which stand for themselves.
-    pub(super) fn whole_numbers(count: usize) -> Self {
+    fn whole_numbers(count: usize) -> Self {
         Self {
             count,
             stored_per_code: 1.0,

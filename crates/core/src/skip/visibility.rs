@@ -120,65 +120,64 @@ impl Visibility {
 
     /// For each code, the first entry that values from it upwards fall on and the last that values up to it do.
     pub fn value_entries(&self, codes: &RangeCodes, normalised_from_stored: (f64, f64)) -> Vec<[u16; 2]> {
-        entries_of_codes(codes, normalised_from_stored, self.value_axis, self.size[0])
+        self.value_axis.entries_of_codes(codes, normalised_from_stored, self.size[0])
     }
 
     /// The same for the gradient magnitude along the second axis.
     pub fn gradient_entries(&self, codes: &RangeCodes, normalised_from_stored: (f64, f64)) -> Vec<[u16; 2]> {
-        entries_of_codes(codes, normalised_from_stored, ValueAxis::Table, self.size[1])
+        ValueAxis::Table.entries_of_codes(codes, normalised_from_stored, self.size[1])
     }
 
-    /// All entries of the second axis.
-    pub(super) fn all_rows(&self) -> [u16; 2] {
-        [0, (self.size[1] - 1) as u16]
+    /// For each code of a smallest value the lowest code of a largest value with which a block can contribute, whatever its
+    /// gradients; the number of codes if there is none.
+    pub fn occupied_from(&self, codes: &RangeCodes, normalised_from_stored: (f64, f64)) -> Vec<u32> {
+        let entries = self.value_entries(codes, normalised_from_stored);
+        let is_occupied = |lo: usize, hi: usize| {
+            let columns = [entries[lo][0], entries[hi][1]];
+            let rows = match self.second_axis {
+                SecondAxis::Value => columns,
+                SecondAxis::None | SecondAxis::Gradient => [0, (self.size[1] - 1) as u16],
+            };
+            self.is_any_visible(columns, rows)
+        };
+        // A wider interval shows no less, so that one walk over both ends finds them all.
+        let mut hi = 0;
+        (0..entries.len())
+            .map(|lo| {
+                hi = hi.max(lo);
+                while hi < entries.len() && !is_occupied(lo, hi) {
+                    hi += 1;
+                }
+                hi as u32
+            })
+            .collect()
     }
 }
 
 impl ValueAxis {
-    /// The entries that a normalised value in f32 falls on.
+    /// The entries that a normalised value falls on, whether it is multiplied by their number in f32 or exactly.
     fn entries(self, value: f32, count: usize) -> [u16; 2] {
         match self {
             Self::Table => {
-                let along = value.clamp(0.0, 1.0) * (count - 1) as f32;
+                let along = f64::from(value.clamp(0.0, 1.0)) * (count - 1) as f64;
                 [along.floor() as u16, along.ceil() as u16]
             }
             Self::AtLeast(threshold) => [u16::from(value.clamp(0.0, 1.0) >= threshold); 2],
         }
     }
 
-    /// The same in f64.
-    fn entries_f64(self, value: f64, count: usize) -> [u16; 2] {
-        match self {
-            Self::Table => {
-                let along = value.clamp(0.0, 1.0) * (count - 1) as f64;
-                [along.floor() as u16, along.ceil() as u16]
-            }
-            Self::AtLeast(threshold) => [u16::from(value.clamp(0.0, 1.0) >= f64::from(threshold)); 2],
-        }
+    /// For each code, the first entry that numbers from it upwards fall on and the last that numbers up to it do.
+    fn entries_of_codes(
+        self,
+        codes: &RangeCodes,
+        (scale, offset): (f64, f64),
+        count: usize,
+    ) -> Vec<[u16; 2]> {
+        // As the casters normalise: each step rounded to f32.
+        let entries = |stored: f32| self.entries(stored * scale as f32 + offset as f32, count);
+        let of_code = |code: u16| [entries(codes.lowest(code))[0], entries(codes.highest(code))[1]];
+        (0..codes.count).map(|code| of_code(code as u16)).collect()
     }
-}
-
-/// The entries of each code, whichever way a sampler normalises: in f32, in f64 with the f32 or the f64 map, or in f32 with
-/// a fused multiplication.
-fn entries_of_codes(
-    codes: &RangeCodes,
-    (scale, offset): (f64, f64),
-    axis: ValueAxis,
-    count: usize,
-) -> Vec<[u16; 2]> {
-    let (scale_f32, offset_f32) = (scale as f32, offset as f32);
-    let entries = |stored: f32| {
-        let wide = f64::from(stored) * f64::from(scale_f32) + f64::from(offset_f32);
-        let all = [
-            axis.entries(stored * scale_f32 + offset_f32, count),
-            axis.entries(wide as f32, count),
-            axis.entries_f64(wide, count),
-            axis.entries_f64(f64::from(stored) * scale + offset, count),
-        ];
-        all.into_iter().fold(all[0], |[first, last], [f, l]| [first.min(f), last.max(l)])
-    };
-    let of_code = |code: u16| [entries(codes.lowest(code))[0], entries(codes.highest(code))[1]];
-    (0..codes.count).map(|code| of_code(code as u16)).collect()
 }
 
 /// Summed-area table with a row and a column of zeros before the entries.

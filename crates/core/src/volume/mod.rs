@@ -3,12 +3,14 @@
 mod grid;
 mod statistics;
 mod storage;
+mod stored_slices;
 mod voxels;
 mod window;
 
 pub use grid::{Grid, GridError};
 pub use statistics::{Histogram, Statistics};
 pub use storage::{Encoding, StorageKind, StoredVoxels};
+pub(crate) use stored_slices::StoredSlices;
 pub use voxels::{Voxel, VoxelType, Voxels};
 pub use window::{Window, WindowError};
 
