@@ -194,24 +194,25 @@ impl<'a> Estimate<'a> {
 
     fn central_differences(&self, magnitudes: &mut [f32], neighbours: &[Vec<f32>]) {
         let [right, left, above, below, behind, before] = rows(neighbours, magnitudes.len());
+        let scale = self.per_difference;
         for (i, magnitude) in magnitudes.iter_mut().enumerate() {
-            let differences = [right[i] - left[i], above[i] - below[i], behind[i] - before[i]];
-            *magnitude = self.magnitude(differences);
+            let x = (right[i] - left[i]) * scale.x;
+            let y = (above[i] - below[i]) * scale.y;
+            let z = (behind[i] - before[i]) * scale.z;
+            *magnitude = (x * x + y * y + z * z).sqrt();
         }
     }
 
     fn tetrahedron(&self, magnitudes: &mut [f32], neighbours: &[Vec<f32>]) {
         let [a, b, c, d] = rows(neighbours, magnitudes.len());
+        let scale = self.per_difference;
         for (i, magnitude) in magnitudes.iter_mut().enumerate() {
             let (a, b, c, d) = (a[i], b[i], c[i], d[i]);
-            *magnitude = self.magnitude([(a - b) + (d - c), (c - a) + (d - b), (b - a) + (d - c)]);
+            let x = (a - b) * scale.x + (d - c) * scale.x;
+            let y = (c - a) * scale.y + (d - b) * scale.y;
+            let z = (b - a) * scale.z + (d - c) * scale.z;
+            *magnitude = (x * x + y * y + z * z).sqrt();
         }
-    }
-
-    #[inline(always)]
-    fn magnitude(&self, [x, y, z]: [f32; 3]) -> f32 {
-        let scale = self.per_difference;
-        ((x * scale.x).powi(2) + (y * scale.y).powi(2) + (z * scale.z).powi(2)).sqrt()
     }
 }
 

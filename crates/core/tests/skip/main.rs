@@ -4,6 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "all of this crate is test code")]
 
 mod distances;
+mod gradients;
 mod occupancy;
 mod ranges;
 mod scene;

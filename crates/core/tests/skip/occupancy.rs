@@ -1,9 +1,13 @@
 //! Whatever a sample in an empty block is, it cannot be seen; and blocks that hold nothing visible are empty.
 
-use crate::scene::{Scene, block_sizes, modes, scenes, share_of_block, transfers, windows};
+use crate::scene::{
+    Scene, block_sizes, depths, methods, modes, numbers, scenes, share_of_block, transfers, trilinear,
+    windows,
+};
 use glam::Vec3;
 use proptest::prelude::*;
 use wheatstone_core::cast::{CastParameters, Classifier};
+use wheatstone_core::gradient_map::GradientMap;
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::scene::{Mode, Settings};
 use wheatstone_core::skip::{BlockRanges, BlockSize, Occupancy, Visibility};
@@ -36,6 +40,34 @@ fn occupancy_of(scene: &Scene, parameters: &CastParameters, block_size: BlockSiz
     Occupancy::new(ranges.normalised(map), None, &Visibility::new(parameters))
 }
 
+/// A number in [0, 1] at one of some entries of a table, or so many entries and so many ulps beside it.
+#[derive(Debug, Clone)]
+struct NearEntry {
+    entry: prop::sample::Index,
+    entries_beside: f32,
+    ulps_beside: i32,
+}
+
+impl NearEntry {
+    fn value(&self, entries: &[usize], count: usize) -> f32 {
+        let entry = if entries.is_empty() { self.entry.index(count) } else { *self.entry.get(entries) };
+        let value = (entry as f32 + self.entries_beside) / (count.max(2) - 1) as f32;
+        f32::from_bits(value.max(1e-6).to_bits().saturating_add_signed(self.ulps_beside)).clamp(0.0, 1.0)
+    }
+}
+
+fn near_an_entry() -> impl Strategy<Value = NearEntry> {
+    let beside = prop_oneof![2 => Just(0.0_f32), 1 => Just(-1.0), 1 => Just(1.0), 2 => -2.0_f32..2.0];
+    (any::<prop::sample::Index>(), beside, -1..=1)
+        .prop_map(|(entry, entries_beside, ulps_beside)| NearEntry { entry, entries_beside, ulps_beside })
+}
+
+/// Low corner of a block, block units.
+fn block_of(occupancy: &Occupancy, index: usize) -> Vec3 {
+    let [width, height, _] = occupancy.grid().dims();
+    Vec3::from([index % width, index / width % height, index / (width * height)].map(|b| b as f32))
+}
+
 fn cases() -> impl Strategy<Value = (Scene, Window, Settings)> {
     let settings = (transfers(), modes(), prop::bool::ANY);
     (scenes(), settings).prop_flat_map(|(scene, (transfer, mode, preintegrated))| {
@@ -47,7 +79,43 @@ fn cases() -> impl Strategy<Value = (Scene, Window, Settings)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    #[test]
+    fn with_a_gradient_map_too(
+        (scene, window, settings) in cases(),
+        block_size in block_sizes(),
+        (method, depth) in (methods(), depths()),
+        shares in prop::collection::vec(prop::array::uniform3(share_of_block()), 4..40),
+    ) {
+        let parameters = scene.parameters(&Settings { mode: Mode::Composite, preintegrated: false, ..settings });
+        let map = GradientMap::new(&scene.volume, scene.kind, method, depth);
+        let values = BlockRanges::of_values(&scene.volume, scene.kind, block_size);
+        let gradients = BlockRanges::of_gradients(&map, block_size);
+        let (scale, offset) = scene.encoding.normalised_from_stored(window);
+        let gradient_map = map.normalised_from_code(scale);
+        let occupancy = Occupancy::new(
+            values.normalised((scale, offset)),
+            Some(gradients.normalised(gradient_map)),
+            &Visibility::new(&parameters),
+        );
+        let by_value = occupancy_of(&scene, &parameters, block_size);
+        let magnitudes = numbers(map.codes());
+        for index in (0..occupancy.occupied().len()).filter(|&index| !occupancy.occupied()[index]) {
+            let block = block_of(&occupancy, index);
+            for &share in &shares {
+                let position = (block + Vec3::from(share)) / occupancy.grid().blocks_from_texture();
+                let value = scene.value_at(window, position);
+                let code = trilinear(scene.dims(), &magnitudes, position);
+                let magnitude = (code * gradient_map.0 as f32).min(1.0);
+                let seen = contributes(&parameters, value, value, magnitude);
+                prop_assert!(!seen, "block {} at {:?}: {} {}", index, position, value, magnitude);
+            }
+        }
+        for (both, value) in occupancy.occupied().iter().zip(by_value.occupied()) {
+            prop_assert!(value >= both, "gradients only empty blocks");
+        }
+    }
 
     #[test]
     fn a_sample_that_contributes_is_in_an_occupied_block(
@@ -57,18 +125,16 @@ proptest! {
     ) {
         let parameters = scene.parameters(&settings);
         let occupancy = occupancy_of(&scene, &parameters, block_size);
-        let grid = occupancy.grid();
-        let [width, height, _] = grid.dims();
-        for (index, &is_occupied) in occupancy.occupied().iter().enumerate().filter(|(_, o)| !**o) {
-            let block = [index % width, index / width % height, index / (width * height)].map(|b| b as f32);
+        for index in (0..occupancy.occupied().len()).filter(|&index| !occupancy.occupied()[index]) {
+            let block = block_of(&occupancy, index);
             let position = |x: f32, y: f32, z: f32| {
-                (Vec3::from(block) + Vec3::new(x, y, z)) / grid.blocks_from_texture()
+                (block + Vec3::new(x, y, z)) / occupancy.grid().blocks_from_texture()
             };
             for &([x, y, z, x2, y2, z2], gradient) in &shares {
                 let [before, sample] = [position(x, y, z), position(x2, y2, z2)];
                 let value = scene.value_at(window, sample);
                 let seen = contributes(&parameters, scene.value_at(window, before), value, gradient);
-                prop_assert!(is_occupied || !seen, "block {:?} at {:?}: {}", block, sample, value);
+                prop_assert!(!seen, "block {:?} at {:?}: {}", block, sample, value);
                 if parameters.mode == Mode::Composite && parameters.classifier == Classifier::Value {
                     let seen = is_visible_f64(&parameters, scene.value_at_f64(window, sample));
                     prop_assert!(!seen, "block {:?} at {:?}", block, sample);
@@ -80,30 +146,44 @@ proptest! {
     #[test]
     fn the_table_equals_a_search(
         (scene, _, settings) in cases(),
-        value in prop::array::uniform2(share_of_block()),
-        gradient in prop::array::uniform2(share_of_block()),
+        ends in prop::array::uniform4(near_an_entry()),
     ) {
         let parameters = scene.parameters(&settings);
-        let ordered = |[a, b]: [f32; 2]| [a.min(b), a.max(b)];
-        let ([lo, hi], gradient) = (ordered(value), ordered(gradient));
         let lut = &parameters.lut;
-        let entries = |[lo, hi]: [f32; 2], count: usize| {
-            let last = (count - 1) as f32;
-            (lo * last).floor() as usize..=(hi * last).ceil() as usize
+        let is_visible = |column: usize, row: usize| lut.entries()[row * lut.width() + column][3] < 0.0;
+        // Entries beside which visible ones begin or end, where it matters how an interval is rounded.
+        let (middle_column, middle_row) = lut
+            .entries()
+            .iter()
+            .position(|entry| entry[3] < 0.0)
+            .map_or((0, 0), |first| (first % lut.width(), first / lut.width()));
+        let columns: Vec<usize> =
+            (1..lut.width()).filter(|&c| is_visible(c, middle_row) != is_visible(c - 1, middle_row)).collect();
+        let rows: Vec<usize> =
+            (1..lut.height()).filter(|&r| is_visible(middle_column, r) != is_visible(middle_column, r - 1)).collect();
+        let interval = |edges: &[usize], count: usize, a: &NearEntry, b: &NearEntry| {
+            let (a, b) = (a.value(edges, count), b.value(edges, count));
+            [a.min(b), a.max(b)]
         };
-        let any = |rows: std::ops::RangeInclusive<usize>| {
-            rows.flat_map(|row| entries([lo, hi], lut.width()).map(move |column| row * lut.width() + column))
-                .any(|entry| lut.entries()[entry][3] < 0.0)
+        let value = interval(&columns, lut.width(), &ends[0], &ends[1]);
+        let gradient = interval(&rows, lut.height(), &ends[2], &ends[3]);
+        let [lo, hi] = value;
+        let entries = |[lo, hi]: [f32; 2], count: usize| {
+            let last = (count - 1) as f64;
+            (f64::from(lo) * last).floor() as usize..=(f64::from(hi) * last).ceil() as usize
+        };
+        let any = |mut rows: std::ops::RangeInclusive<usize>| {
+            rows.any(|row| entries(value, lut.width()).any(|column| is_visible(column, row)))
         };
         let expected = match (parameters.mode, parameters.classifier) {
             (Mode::Isosurface { isovalue }, _) => lo < isovalue && hi >= isovalue,
             (Mode::Mean | Mode::XRay | Mode::Mip, _) => hi > 0.0,
             (Mode::MinIp, _) => lo < 1.0,
-            (Mode::Composite, Classifier::PreIntegrated) => any(entries([lo, hi], lut.height())),
+            (Mode::Composite, Classifier::PreIntegrated) => any(entries(value, lut.height())),
             (Mode::Composite, Classifier::ValueGradient) => any(entries(gradient, lut.height())),
             (Mode::Composite, _) => any(0..=0),
         };
-        prop_assert_eq!(Visibility::new(&parameters).may_contribute([lo, hi], gradient), expected);
+        prop_assert_eq!(Visibility::new(&parameters).may_contribute(value, gradient), expected);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::{Scene, block_sizes, scenes};
 use proptest::prelude::*;
-use wheatstone_core::skip::{BlockGrid, BlockRanges, BlockSize, SkipError};
+use wheatstone_core::skip::{BlockGrid, BlockRanges, BlockSize, RangeCodes, SkipError};
 use wheatstone_core::volume::{StorageKind, Voxels};
 
 /// Smallest and largest stored number from one voxel before a block to one after it.
@@ -50,6 +50,28 @@ proptest! {
     #[test]
     fn ranges_equal_brute_force(scene in scenes(), block_size in block_sizes()) {
         check(&scene, block_size);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(5000))]
+
+    #[test]
+    fn rounding_leaves_no_interval(
+        (lo, width) in (-1.0_f32..1.0, prop::sample::select(vec![1e-3_f32, 1.0, 100.0])),
+        corners in prop::array::uniform8(any::<u16>()),
+        position in prop::array::uniform3(prop_oneof![0.0_f32..1.0, Just(0.0), Just(1.0), Just(1.0_f32.next_down())]),
+    ) {
+        let scene = Scene::new([2, 1, 1], Voxels::F32(vec![lo, lo + width]));
+        let codes = RangeCodes::of_values(&scene.volume, StorageKind::F32);
+        let corners = corners.map(|code| codes.stored(code));
+        let mix = |a: f32, b: f32, axis: usize| a + (b - a) * position[axis];
+        let along_x = |i: usize| mix(corners[i], corners[i + 1], 0);
+        let found = mix(mix(along_x(0), along_x(2), 1), mix(along_x(4), along_x(6), 1), 2);
+        let [smallest, largest] =
+            corners.iter().fold([f32::MAX, f32::MIN], |[lo, hi], &c| [lo.min(c), hi.max(c)]);
+        let [lo, hi] = codes.outward([smallest, largest]);
+        prop_assert!(codes.lowest(lo) <= found && found <= codes.highest(hi));
     }
 }
 

@@ -3,7 +3,8 @@
 use glam::{DAffine3, Vec3};
 use proptest::prelude::*;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::scene::{Mode, Placement, Settings};
+use wheatstone_core::gradient_map::GradientDepth;
+use wheatstone_core::scene::{GradientMethod, Mode, Placement, Settings};
 use wheatstone_core::skip::BlockSize;
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::volume::{Encoding, Grid, StorageKind, StoredVoxels, Volume, Voxels, Window};
@@ -156,4 +157,12 @@ pub(crate) fn modes() -> impl Strategy<Value = Mode> {
 /// Positions in a block, texture space: anywhere, on its faces, at voxel centres.
 pub(crate) fn share_of_block() -> impl Strategy<Value = f32> {
     prop_oneof![4 => 0.0_f32..1.0, 1 => Just(0.0), 1 => Just(1.0), 2 => (0_u8..8).prop_map(|i| f32::from(i) / 8.0)]
+}
+
+pub(crate) fn methods() -> impl Strategy<Value = GradientMethod> {
+    prop::sample::select(vec![GradientMethod::CentralDifferences, GradientMethod::Tetrahedron])
+}
+
+pub(crate) fn depths() -> impl Strategy<Value = GradientDepth> {
+    prop::sample::select(vec![GradientDepth::Bits8, GradientDepth::Bits16])
 }

@@ -14,7 +14,7 @@ fn block_at(grid: &BlockGrid, position: Vec3) -> [usize; 3] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn a_leap_passes_no_occupied_block(
