@@ -5,14 +5,20 @@
 
 mod cast_pass;
 pub mod gpu;
+mod gradient_map;
+mod kernel;
+mod layers;
 mod pacer;
+mod readback;
 mod renderer;
 pub mod shader;
+pub mod skip;
 mod target;
 mod uniforms;
 mod volume;
 
 pub use gpu::{AdapterDescription, Gpu, GpuError};
+pub use gradient_map::GpuGradientMap;
 pub use renderer::{Prepared, Renderer};
 pub use target::Target;
 pub use volume::{GpuVolume, TexelFormat};

@@ -134,25 +134,7 @@ fn columns(m: Mat3) -> Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::compose;
-    use std::mem::offset_of;
-
-    fn struct_layout(file: &str, name: &str) -> (Vec<(String, u32)>, u32) {
-        let module = naga::front::wgsl::parse_str(&compose(file, &[]).unwrap().text).unwrap();
-        let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
-        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
-        let members = members.iter().map(|m| (m.name.clone().unwrap(), m.offset)).collect();
-        (members, *span)
-    }
-
-    macro_rules! assert_layout {
-        ($file:literal, $wgsl:literal, $rust:ty, [$($field:ident),* $(,)?]) => {
-            let (members, span) = struct_layout($file, $wgsl);
-            let mirror = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field) as u32)),*];
-            assert_eq!(members, mirror);
-            assert_eq!(span as usize, size_of::<$rust>());
-        };
-    }
+    use crate::shader::assert_layout;
 
     #[test]
     fn cast_uniform_matches_wgsl() {

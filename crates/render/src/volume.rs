@@ -2,10 +2,15 @@
 
 use crate::gpu::{Capabilities, Gpu, GpuError};
 use half::f16;
+use wheatstone_core::skip::RangeCodes;
 use wheatstone_core::volume::{Encoding, StorageKind, StoredVoxels, Volume, Window};
 
 /// Bytes of a slab: what is converted and staged at once.
 const SLAB_BYTES: usize = 16 << 20;
+
+/// How far rounding may carry a number interpolated between half floats of 16-bit numbers, those numbers' units: three f32
+/// interpolations, each off by at most 1½ ulp.
+const HALF_FLOAT_ROUNDING: f32 = 8.0 * f32::EPSILON * 65535.0;
 
 /// Texel formats that volumes are held in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -44,7 +49,7 @@ impl TexelFormat {
         }
     }
 
-    fn wgpu(self) -> wgpu::TextureFormat {
+    pub(crate) fn wgpu(self) -> wgpu::TextureFormat {
         match self {
             Self::R8Unorm => wgpu::TextureFormat::R8Unorm,
             Self::R16Unorm => wgpu::TextureFormat::R16Unorm,
@@ -62,11 +67,20 @@ impl TexelFormat {
     }
 
     /// Stored number of a sampled one.
-    fn stored_per_sampled(self) -> f64 {
+    pub(crate) fn stored_per_sampled(self) -> f64 {
         match self {
             Self::R8Unorm => 255.0,
             Self::R16Unorm | Self::R16FloatOf16Bit => 65535.0,
             Self::R16FloatOf8Bit | Self::R32Float => 1.0,
+        }
+    }
+
+    /// The codes of a volume's block ranges. Half floats of 16-bit numbers are no whole numbers.
+    fn range_codes(self, volume: &Volume) -> RangeCodes {
+        let codes = RangeCodes::of_values(volume, self.storage_kind());
+        match self {
+            Self::R16FloatOf16Bit => RangeCodes { rounding: HALF_FLOAT_ROUNDING, ..codes },
+            _ => codes,
         }
     }
 
@@ -95,6 +109,11 @@ impl TexelFormat {
 pub struct GpuVolume {
     pub(crate) texture: wgpu::TextureView,
     pub(crate) dims: [usize; 3],
+    /// Distance of neighbouring voxels along each axis, voxel lengths.
+    pub(crate) spacing: [f32; 3],
+    pub(crate) range_codes: RangeCodes,
+    /// Largest stored number less the smallest.
+    pub(crate) stored_range: f32,
     format: TexelFormat,
     encoding: Encoding,
 }
@@ -164,8 +183,16 @@ impl GpuVolume {
             gpu.wait()?;
             progress(first_slice + slices, depth);
         }
-        let texture = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { texture, dims, format, encoding })
+        let (grid, (lo, hi)) = (volume.grid(), volume.range());
+        Ok(Self {
+            texture: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            dims,
+            spacing: (grid.spacing_mm() / grid.voxel_length_mm()).as_vec3().to_array(),
+            range_codes: format.range_codes(volume),
+            stored_range: (encoding.stored(hi) - encoding.stored(lo)) as f32,
+            format,
+            encoding,
+        })
     }
 
     /// How the voxels are held.
@@ -178,6 +205,11 @@ impl GpuVolume {
         byte_size(self.dims, self.format)
     }
 
+    /// How values become stored numbers.
+    pub(crate) fn encoding(&self) -> Encoding {
+        self.encoding
+    }
+
     /// Scale and offset from a sampled number to the normalised value.
     pub(crate) fn normalised_from_sampled(&self, window: Window) -> (f64, f64) {
         let (scale, offset) = self.encoding.normalised_from_stored(window);
@@ -185,11 +217,15 @@ impl GpuVolume {
     }
 }
 
-fn byte_size(dims: [usize; 3], format: TexelFormat) -> u64 {
+pub(crate) fn byte_size(dims: [usize; 3], format: TexelFormat) -> u64 {
     dims.iter().map(|&side| side as u64).product::<u64>() * format.byte_size() as u64
 }
 
-fn check_size(capabilities: &Capabilities, dims: [usize; 3], format: TexelFormat) -> Result<(), GpuError> {
+pub(crate) fn check_size(
+    capabilities: &Capabilities,
+    dims: [usize; 3],
+    format: TexelFormat,
+) -> Result<(), GpuError> {
     let largest_side = dims.into_iter().max().unwrap_or(0);
     let bytes = byte_size(dims, format);
     if largest_side <= capabilities.largest_3d_side as usize && bytes <= capabilities.largest_texture {
@@ -204,6 +240,6 @@ fn check_size(capabilities: &Capabilities, dims: [usize; 3], format: TexelFormat
     })
 }
 
-fn extent([width, height, depth]: [usize; 3]) -> wgpu::Extent3d {
+pub(crate) fn extent([width, height, depth]: [usize; 3]) -> wgpu::Extent3d {
     wgpu::Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: depth as u32 }
 }

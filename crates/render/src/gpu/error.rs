@@ -61,6 +61,23 @@ pub enum GpuError {
         /// Largest texture side.
         allowed_side: u32,
     },
+    /// A structure of empty-space skipping exceeds what the device can hold.
+    #[error(
+        "{}×{}×{} blocks for empty-space skipping need {bytes} bytes and a side of {largest_side}; this device allows {allowed_bytes} bytes and sides up to {allowed_side}: use larger blocks",
+        blocks[0], blocks[1], blocks[2]
+    )]
+    TooManyBlocks {
+        /// Blocks along each axis.
+        blocks: [usize; 3],
+        /// Bytes needed.
+        bytes: u64,
+        /// Largest side of the texture needed.
+        largest_side: usize,
+        /// Most bytes.
+        allowed_bytes: u64,
+        /// Largest texture side.
+        allowed_side: u32,
+    },
     /// A picture exceeds the device's largest texture.
     #[error("picture of {width}x{height} pixels: this device allows sides of 1 to {allowed}")]
     PictureSize {

@@ -3,8 +3,12 @@
 //! The first lines of a file import others: `import package::lib::ray::{Ray, ray_at};`. Only the path counts; all
 //! names share one space. A variant is chosen by naming the file that stands for a slot such as `lib/shade`.
 
+#[cfg(test)]
+mod layout;
 mod library;
 
+#[cfg(test)]
+pub(crate) use layout::{assert_layout, struct_layout};
 pub use library::FILES;
 
 use std::fmt::Write as _;

@@ -9,5 +9,6 @@ mod errors;
 mod parity;
 mod scene;
 mod segments;
+mod skip;
 mod tolerance;
 mod upload;

@@ -1,0 +1,123 @@
+//! Compute kernels with one bind group, laid out as their shader declares it.
+
+use crate::gpu::GpuError;
+use crate::shader::compose;
+
+/// Invocations along x and y of every workgroup; along z there is one.
+const WORKGROUP_SIDE: u32 = 8;
+
+/// The files and the entry point of a kernel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct KernelFiles<'a> {
+    pub(crate) root: &'static str,
+    pub(crate) choices: &'a [(&'static str, &'static str)],
+    pub(crate) entry_point: &'static str,
+}
+
+/// A pipeline. Cheap to clone.
+#[derive(Debug, Clone)]
+pub(crate) struct Kernel {
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Kernel {
+    /// Builds the pipeline; what the driver says against it comes with the next [`Gpu::check`](crate::Gpu::check).
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] for files that make no module.
+    pub(crate) fn new(device: &wgpu::Device, files: &KernelFiles<'_>) -> Result<Self, GpuError> {
+        let source = compose(files.root, files.choices)
+            .map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(files.root),
+            source: wgpu::ShaderSource::Wgsl(source.text.into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(files.root),
+            layout: None,
+            module: &module,
+            entry_point: Some(files.entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Ok(Self { pipeline })
+    }
+
+    /// A bind group of resources at the bindings 0, 1, 2, …
+    pub(crate) fn bind(
+        &self,
+        device: &wgpu::Device,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        })
+    }
+
+    /// Adds a pass of at least the given invocations along each axis.
+    pub(crate) fn dispatch(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        group: &wgpu::BindGroup,
+        [x, y, z]: [u32; 3],
+    ) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups(x.div_ceil(WORKGROUP_SIDE), y.div_ceil(WORKGROUP_SIDE), z);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::FILES;
+
+    fn all() -> Vec<KernelFiles<'static>> {
+        let mut all = crate::skip::kernel_files();
+        all.extend(crate::gradient_map::kernel_files());
+        all
+    }
+
+    #[test]
+    fn every_kernel_is_valid_wgsl() {
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
+        );
+        for files in all() {
+            let source = compose(files.root, files.choices).unwrap();
+            let module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|error| {
+                let line = error.location(&source.text).map_or(0, |l| l.line_number as usize);
+                panic!("{files:?} {:?}: {}", source.origin(line), error.emit_to_string(&source.text))
+            });
+            validator.validate(&module).unwrap_or_else(|error| panic!("{files:?}: {error:?}"));
+        }
+    }
+
+    #[test]
+    fn every_pipeline_builds_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        for files in all() {
+            Kernel::new(&device, &files).unwrap();
+        }
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+
+    #[test]
+    fn no_root_is_left_out() {
+        let all = all();
+        for (path, _) in FILES.iter().filter(|(path, _)| !path.starts_with("lib/") && *path != "cast") {
+            assert!(all.iter().any(|files| files.root == *path), "{path}");
+        }
+    }
+}

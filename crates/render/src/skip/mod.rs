@@ -1,0 +1,85 @@
+//! Empty-space skipping on the device: what `wheatstone_core::skip` does, without reading the volume back.
+//!
+//! [`SkipBuilder`] finds the [`GpuBlockRanges`] of a volume once; from then on each change of the settings takes time
+//! proportional to the number of blocks: occupied blocks, distances by sweeps along x, y and z, a [`GpuSkipMap`].
+
+mod baseline;
+mod block_ranges;
+mod block_texture;
+mod builder;
+mod distance;
+mod field;
+mod kernels;
+mod occupancy;
+mod skip_map;
+mod table;
+
+pub use baseline::DmBaseline;
+pub use block_ranges::GpuBlockRanges;
+pub(crate) use block_ranges::VoxelTexture;
+pub use builder::SkipBuilder;
+pub use kernels::SkipKernels;
+pub use skip_map::GpuSkipMap;
+pub use wheatstone_core::skip::Structure;
+
+use wheatstone_core::skip::OCTANTS;
+
+/// Every kernel of this module.
+#[cfg(test)]
+pub(crate) fn kernel_files() -> Vec<crate::kernel::KernelFiles<'static>> {
+    vec![
+        kernels::RANGES_OF_WHOLE,
+        kernels::RANGES_OF_FLOATS,
+        kernels::OCCUPIED_BY_VALUE,
+        kernels::OCCUPIED_BY_VALUE_GRADIENT,
+        kernels::ROWS_UP,
+        kernels::ROWS_DOWN,
+        kernels::COLUMNS,
+        baseline::VOXELS_BY_VALUE,
+        baseline::VOXELS_BY_VALUE_GRADIENT,
+        baseline::ZIGZAG,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::baseline::VoxelUniform;
+    use super::block_ranges::RangeUniform;
+    use super::distance::SweepUniform;
+    use crate::shader::assert_layout;
+
+    #[test]
+    fn range_uniform_matches_wgsl() {
+        assert_layout!(
+            "lib/range_uniform",
+            "RangeUniform",
+            RangeUniform,
+            [
+                block_size,
+                first_layer,
+                blocks,
+                last_code,
+                stored_per_sampled,
+                stored_per_code,
+                stored_at_zero,
+                largest_stored,
+                rounding,
+            ]
+        );
+    }
+
+    #[test]
+    fn sweep_uniform_matches_wgsl() {
+        assert_layout!("lib/sweep", "Sweep", SweepUniform, [lines, line_strides, length, start, step]);
+    }
+
+    #[test]
+    fn voxel_uniform_matches_wgsl() {
+        assert_layout!(
+            "lib/voxels",
+            "VoxelUniform",
+            VoxelUniform,
+            [block_size, value_scale, blocks, value_offset, gradient_scale]
+        );
+    }
+}
