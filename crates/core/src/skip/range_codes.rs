@@ -7,8 +7,11 @@ use crate::volume::{Encoding, StorageKind, Volume};
 /// of three f32 interpolations `a + (b − a)·t` by at most 1½ ulp. (Between whole numbers of 16 bits it never does.)
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
-/// How the ends of intervals of stored numbers are written as 16-bit codes: `stored = min(code ·
-/// stored_per_code + stored_at_zero, largest_stored)`. Whole numbers of 8 or 16 bits are their own codes; floats are rounded outward.
+/// How the ends of intervals of stored numbers are written as 16-bit codes:
+/// `stored = min(code · stored_per_code + stored_at_zero, largest_stored)`.
+///
+/// Whole numbers of 8 or 16 bits are their own codes; floats are rounded outward. A fill value far outside the data takes
+/// nearly all codes from it: what is left is coarse, and blocks count as occupied that need not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RangeCodes {
     /// How many codes there are.
