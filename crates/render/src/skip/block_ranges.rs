@@ -162,7 +162,8 @@ impl GpuBlockRanges {
         4 * self.grid.block_count() as u64
     }
 
-    pub(super) fn view(&self) -> wgpu::TextureView {
+    /// Read as `texture_3d<u32>`: codes of the smallest and the largest number.
+    pub(crate) fn view(&self) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 

@@ -212,6 +212,36 @@ fn nothing_and_everything_occupied() {
 }
 
 #[test]
+fn distances_saturate() {
+    on_device(|gpu, _| {
+        let kernels = SkipKernels::new(gpu).unwrap();
+        for axis in 0..3 {
+            let mut dims = [3, 4, 2];
+            dims[axis] = 600;
+            for occupied in [0, dims.iter().product::<usize>() - 1] {
+                let mut voxels = vec![0; dims.iter().product()];
+                voxels[occupied] = 255;
+                let volume =
+                    Volume::new(Grid::centred(dims, [1.0; 3]).unwrap(), Voxels::U8(voxels)).unwrap();
+                let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
+                let block_size = BlockSize::cube(2).unwrap();
+                let mut builder = SkipBuilder::new(gpu, &kernels, &uploaded, block_size).unwrap();
+                let settings = Settings::new(volume.full_window(), visible_between(0.5, 1.0));
+                let parameters = parameters(&volume, &settings);
+                let occupancy = reference_occupancy(&volume, uploaded.format(), block_size, &parameters);
+                for structure in STRUCTURES {
+                    let found = builder.map(gpu, &parameters, structure).unwrap().read(gpu).unwrap();
+                    let largest = if structure == Structure::Occupancy { 1 } else { 255 };
+                    assert_eq!(found.iter().max(), Some(&largest));
+                    let expected = SkipMap::new(&occupancy, structure);
+                    assert!(found == expected.distances(), "{dims:?} {structure:?}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
 fn an_updated_map_is_a_new_one() {
     on_device(|gpu, _| {
         let kernels = SkipKernels::new(gpu).unwrap();
