@@ -11,10 +11,8 @@ import package::lib::sweep::{sweep, field, line_start};
 // A line is a column of words: four columns of blocks, one after the other, so that one table serves them all. Nothing in
 // it is a choice between two paths, both of which software Vulkan would run.
 
-// Positions count up from one column to the next with a gap of 256, so that no position of a column before is near.
-const GAP: u32 = 256u;
-
-// The last position of each distance.
+// The last position of each distance. Positions count on from one column to the next: a distance that grew is at most the
+// number of blocks so far, so that the positions of columns before are always further away.
 var<private> last_at: array<u32, 256>;
 
 @compute @workgroup_size(8, 8)
@@ -22,7 +20,7 @@ fn sweep_columns(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= sweep.lines) {
         return;
     }
-    var position = GAP;
+    var position = 1u;
     for (var shift = 0u; shift < 32u; shift += 8u) {
         var at = line_start(id.xy);
         var distance = 255u;
@@ -40,6 +38,5 @@ fn sweep_columns(@builtin(global_invocation_id) id: vec3u) {
             position++;
             at += sweep.step;
         }
-        position += GAP;
     }
 }

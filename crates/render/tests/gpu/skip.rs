@@ -221,8 +221,7 @@ fn distances_saturate() {
             for occupied in [0, dims.iter().product::<usize>() - 1] {
                 let mut voxels = vec![0; dims.iter().product()];
                 voxels[occupied] = 255;
-                let volume =
-                    Volume::new(Grid::centred(dims, [1.0; 3]).unwrap(), Voxels::U8(voxels)).unwrap();
+                let volume = Volume::new(Grid::centred(dims, [1.0; 3]).unwrap(), Voxels::U8(voxels)).unwrap();
                 let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
                 let block_size = BlockSize::cube(2).unwrap();
                 let mut builder = SkipBuilder::new(gpu, &kernels, &uploaded, block_size).unwrap();
