@@ -142,7 +142,7 @@ impl Engine {
             Self::Gpu(engine) => engine.cast(views),
             Self::Cpu(engine) => {
                 let start = Instant::now();
-                engine.casts = engine.caster.cast(&engine.parameters, views);
+                engine.casts = engine.caster.cast(&engine.parameters, None, views);
                 Ok(start.elapsed())
             }
         }

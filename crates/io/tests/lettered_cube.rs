@@ -66,7 +66,7 @@ fn picture(volume: &Volume) -> RgbImage {
     let orbit = Orbit { azimuth_rad: 0.6, elevation_rad: 0.4, ..Orbit::default() };
     let view = orbit.view(Projection::Perspective(frustum), size);
     let parameters = CastParameters::new(&settings, &placement);
-    Caster::new(volume).cast(&parameters, &[view])[0].image.over_background([0.0; 3])
+    Caster::new(volume).cast_exactly(&parameters, None, &[view])[0].image.over_background([0.0; 3])
 }
 
 #[test]

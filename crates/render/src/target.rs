@@ -66,7 +66,7 @@ impl Target {
             .collect();
         let samples = depth_and_samples.iter().map(|&[_, samples]| samples as u64).sum();
         let [width, height] = self.size;
-        Ok(Cast { image: Image { width, height, color, depth_m }, samples })
+        Ok(Cast { image: Image { width, height, color, depth_m }, samples, map_reads: 0 })
     }
 
     fn read_texture<T: bytemuck::Pod>(&self, gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {

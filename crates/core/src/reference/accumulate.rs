@@ -15,6 +15,8 @@ pub(super) struct Pixels<L> {
     pub(super) depth_m: L,
     /// Samples taken along the ray, those of shading not counted.
     pub(super) samples: L,
+    /// Reads of the skip map along the ray, those of shading not counted.
+    pub(super) map_reads: L,
 }
 
 /// A way from samples to pixels.

@@ -6,6 +6,7 @@ use super::context::Context;
 use super::lanes::{Lanes, Mask};
 use super::ray::Ray;
 use super::shade::shade;
+use super::skip::Walk;
 use super::vector::Vec3;
 use crate::cast::FIRST_HIT_ALPHA;
 use glam::Vec3A;
@@ -24,29 +25,39 @@ impl<C: Classify> Accumulate for Composite<C> {
 
         let mut rgb = Vec3::splat(token, Vec3A::ZERO);
         let (mut transmittance, mut depth_m, mut samples) = (one, infinity, zero);
-        let mut previous = context.value_at(token, ray.at(L::splat(token, -0.5)));
-        let mut index = zero;
-        let mut is_active = index.lt(ray.sample_count);
-        while is_active.any() {
-            let value = context.value_at(token, ray.at(index + C::VALUE_OFFSET));
-            samples += L::select(is_active, one, zero);
-            let is_visible = is_active & C::may_be_visible(context, token, value, previous);
-            if is_visible.any() {
-                let position = ray.at(index);
+        let mut walk = Walk::along(context, token, ray);
+        let needs_previous = C::VALUE_OFFSET != 0.0;
+        let mut previous = zero;
+        if needs_previous {
+            previous = context.value_at_outlined(token, ray.at(L::splat(token, C::VALUE_OFFSET - 1.0)));
+        }
+        let mut is_transparent = walk.is_active;
+        while walk.is_active.any() {
+            walk.leap(token, is_transparent);
+            if needs_previous && walk.has_leapt.any() {
+                let skipped = context.value_at_outlined(token, ray.at(walk.index + (C::VALUE_OFFSET - 1.0)));
+                samples += L::select(walk.has_leapt, one, zero);
+                previous = L::select(walk.has_leapt, skipped, previous);
+            }
+            let value = context.value_at(token, ray.at(walk.index + C::VALUE_OFFSET));
+            samples += L::select(walk.is_active, one, zero);
+            let may_be_visible = walk.is_active & C::may_be_visible(context, token, value, previous);
+            is_transparent = !may_be_visible;
+            if may_be_visible.any() {
+                let position = ray.at(walk.index);
                 let classified = C::classify(context, token, position, value, previous);
-                let log2 = L::select(is_visible, classified.entry.log2, zero);
+                let log2 = L::select(may_be_visible, classified.entry.log2, zero);
                 let step_transmittance = (log2 * ray.step_length).exp2();
                 let lit = shade::<C, L>(context, token, ray, position, &classified);
                 rgb = lit.mul_add((one - step_transmittance) * transmittance, rgb);
                 transmittance *= step_transmittance;
                 let is_hit = infinity.le(depth_m) & transmittance.le(hit_transmittance);
-                depth_m = L::select(is_hit, ray.depth_m(index), depth_m);
-                is_active = is_active & !transmittance.le(least_transmittance);
+                depth_m = L::select(is_hit, ray.depth_m(walk.index), depth_m);
+                walk.is_active = walk.is_active & !transmittance.le(least_transmittance);
             }
             previous = value;
-            index = index + 1.0;
-            is_active = is_active & index.lt(ray.sample_count);
+            walk.advance();
         }
-        Pixels { rgb, alpha: one - transmittance, depth_m, samples }
+        Pixels { rgb, alpha: one - transmittance, depth_m, samples, map_reads: walk.map_reads }
     }
 }

@@ -1,9 +1,11 @@
 //! What all parts of a cast may read.
 
 use super::lanes::Lanes;
+use super::skip::SkipSampler;
 use super::vector::Vec3;
 use super::volume::Sampler;
-use crate::cast::CastParameters;
+use crate::cast::{CastParameters, Classifier};
+use crate::skip::SkipMap;
 use glam::{Mat3, Vec3A};
 
 /// The volume and the settings, with what they amount to in voxel space.
@@ -11,6 +13,8 @@ use glam::{Mat3, Vec3A};
 pub(super) struct Context<'a> {
     pub(super) sampler: Sampler<'a>,
     pub(super) parameters: &'a CastParameters,
+    /// What is empty, if rays are to leap over it.
+    pub(super) skip: Option<SkipSampler<'a>>,
     /// Low corner of the visible box.
     box_lo: Vec3A,
     /// High corner of the visible box.
@@ -24,12 +28,20 @@ pub(super) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    pub(super) fn new(sampler: Sampler<'a>, parameters: &'a CastParameters) -> Self {
+    pub(super) fn new(
+        sampler: Sampler<'a>,
+        parameters: &'a CastParameters,
+        skip: Option<&'a SkipMap>,
+    ) -> Self {
         let dims = sampler.dims();
         let voxel_from_metric = Mat3::from_diagonal(dims.into()) * parameters.texture_from_metric;
         Self {
             sampler,
             parameters,
+            skip: skip.map(|map| {
+                let is_preintegrated = parameters.classifier == Classifier::PreIntegrated;
+                SkipSampler::new(map, parameters.mode, is_preintegrated, parameters.sampling_factor.recip())
+            }),
             box_lo: parameters.box_lo * dims,
             box_hi: parameters.box_hi * dims,
             plane_normal: Vec3A::from_vec4(parameters.plane) / dims,
@@ -38,10 +50,26 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// What is empty, if shading rays are to leap over it. Inside an isosurface there are empty blocks that cast shadows.
+    #[inline(always)]
+    pub(super) fn shading_skip(&self) -> Option<SkipSampler<'a>> {
+        self.skip.filter(|_| self.parameters.classifier != Classifier::Isovalue)
+    }
+
     /// The normalised value at a position in voxel space.
     #[inline(always)]
     pub(super) fn value_at<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> L {
         self.sampler.value_at(token, position)
+    }
+
+    /// The same as a function of its own, for places where it is rarely asked.
+    #[inline(always)]
+    pub(super) fn value_at_outlined<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> L {
+        L::outlined(
+            token,
+            #[inline(always)]
+            || self.value_at(token, position),
+        )
     }
 
     /// Whether a position is in the visible part of the volume.

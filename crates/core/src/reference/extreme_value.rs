@@ -5,6 +5,7 @@ use super::context::Context;
 use super::lanes::{Lanes, Mask};
 use super::lut::lut_at;
 use super::ray::Ray;
+use super::skip::Walk;
 use std::marker::PhantomData;
 
 /// Keeps the best value.
@@ -12,7 +13,7 @@ pub(super) struct ExtremeValue<B>(PhantomData<B>);
 
 /// Which of two values is kept.
 pub(super) trait Better {
-    /// Worse than every value.
+    /// No value is worse; what the first sample and every skipped one have at least.
     const WORST: f32;
 
     fn is_better<L: Lanes>(value: L, best: L) -> L::Mask;
@@ -22,7 +23,7 @@ pub(super) trait Better {
 pub(super) struct Maximum;
 
 impl Better for Maximum {
-    const WORST: f32 = -1.0;
+    const WORST: f32 = 0.0;
 
     #[inline(always)]
     fn is_better<L: Lanes>(value: L, best: L) -> L::Mask {
@@ -34,7 +35,7 @@ impl Better for Maximum {
 pub(super) struct Minimum;
 
 impl Better for Minimum {
-    const WORST: f32 = 2.0;
+    const WORST: f32 = 1.0;
 
     #[inline(always)]
     fn is_better<L: Lanes>(value: L, best: L) -> L::Mask {
@@ -45,25 +46,25 @@ impl Better for Minimum {
 impl<B: Better> Accumulate for ExtremeValue<B> {
     #[inline(always)]
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
-        let mut best = L::splat(token, B::WORST);
-        let mut index = L::splat(token, 0.0);
-        let mut best_index = index;
-        let mut is_active = index.lt(ray.sample_count);
-        while is_active.any() {
-            let value = context.value_at(token, ray.at(index));
-            let is_better = is_active & B::is_better(value, best);
+        let one = L::splat(token, 1.0);
+        let zero = L::splat(token, 0.0);
+        let (mut best, mut best_index, mut samples) = (L::splat(token, B::WORST), zero, zero);
+        let mut walk = Walk::along(context, token, ray);
+        while walk.is_active.any() {
+            walk.leap(token, walk.is_active);
+            let value = context.value_at(token, ray.at(walk.index));
+            samples += L::select(walk.is_active, one, zero);
+            let is_better = walk.is_active & B::is_better(value, best);
             best = L::select(is_better, value, best);
-            best_index = L::select(is_better, index, best_index);
-            index = index + 1.0;
-            is_active = is_active & index.lt(ray.sample_count);
+            best_index = L::select(is_better, walk.index, best_index);
+            walk.advance();
         }
-        // A ray without samples has no best value, and the table has no entry for the worst.
-        let value = best.max(L::splat(token, 0.0)).min(L::splat(token, 1.0));
         Pixels {
-            rgb: lut_at(&context.parameters.lut, token, value).rgb,
-            alpha: L::splat(token, 1.0),
+            rgb: lut_at(&context.parameters.lut, token, best).rgb,
+            alpha: one,
             depth_m: ray.depth_m(best_index),
-            samples: ray.sample_count,
+            samples,
+            map_reads: walk.map_reads,
         }
     }
 }

@@ -6,6 +6,7 @@ use super::context::Context;
 use super::lanes::{Lanes, Mask};
 use super::ray::Ray;
 use super::shade::shade;
+use super::skip::Walk;
 use super::vector::Vec3;
 use crate::cast::{BISECTIONS, SURFACE_LIFT};
 use glam::Vec3A;
@@ -18,32 +19,38 @@ impl Accumulate for FirstHit {
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let isovalue = L::splat(token, context.parameters.isovalue);
-        let mut was_in = isovalue.le(context.value_at(token, ray.at(L::splat(token, -0.5))));
+        let mut was_in = isovalue.le(context.value_at_outlined(token, ray.at(L::splat(token, -0.5))));
         let mut samples = zero;
-        let mut index = zero;
-        let mut is_active = index.lt(ray.sample_count);
-        let mut is_found = !is_active & is_active;
-        while is_active.any() {
-            let is_in = isovalue.le(context.value_at(token, ray.at(index)));
-            samples += L::select(is_active, one, zero);
-            let has_crossed = is_active & ((is_in & !was_in) | (was_in & !is_in));
+        let mut walk = Walk::along(context, token, ray);
+        let mut is_found = !walk.is_active & walk.is_active;
+        while walk.is_active.any() {
+            // The step out of an occupied block may cross the surface as well.
+            walk.leap(token, walk.left_before());
+            if walk.has_leapt.any() {
+                let skipped_in = isovalue.le(context.value_at_outlined(token, ray.at(walk.index - 1.0)));
+                samples += L::select(walk.has_leapt, one, zero);
+                was_in = (skipped_in & walk.has_leapt) | (was_in & !walk.has_leapt);
+            }
+            let is_in = isovalue.le(context.value_at(token, ray.at(walk.index)));
+            samples += L::select(walk.is_active, one, zero);
+            let has_crossed = walk.is_active & ((is_in & !was_in) | (was_in & !is_in));
             is_found = is_found | has_crossed;
-            is_active = is_active & !has_crossed;
-            // A lane that has found its surface keeps what it was before it.
-            was_in = (was_in & !is_active) | (is_in & is_active);
-            index = L::select(is_active, index + 1.0, index);
-            is_active = is_active & index.lt(ray.sample_count);
+            walk.is_active = walk.is_active & !has_crossed;
+            // A ray that has found its surface keeps its index, and what it was before.
+            was_in = (was_in & !walk.is_active) | (is_in & walk.is_active);
+            walk.advance();
         }
         let miss = Pixels {
             rgb: Vec3::splat(token, Vec3A::ZERO),
             alpha: zero,
             depth_m: L::splat(token, f32::INFINITY),
             samples,
+            map_reads: walk.map_reads,
         };
         if !is_found.any() {
             return miss;
         }
-        let index = crossing(context, token, ray, index, was_in);
+        let index = crossing(context, token, ray, walk.index, was_in);
         let position = ray.at(index);
         let classified = Isovalue::classify(context, token, position, isovalue, isovalue);
         let lifted = position + lift(context, token, classified.gradient);
@@ -52,7 +59,7 @@ impl Accumulate for FirstHit {
             rgb: Vec3::select(is_found, rgb, miss.rgb),
             alpha: L::select(is_found, one, zero),
             depth_m: L::select(is_found, ray.depth_m(index), miss.depth_m),
-            samples,
+            ..miss
         }
     }
 }
@@ -74,7 +81,7 @@ fn crossing<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, inde
     let mut lo = (index - 1.0).max(L::splat(token, -0.5));
     for _ in 0..BISECTIONS {
         let middle = (lo + hi) * 0.5;
-        let is_in = isovalue.le(context.value_at(token, ray.at(middle)));
+        let is_in = isovalue.le(context.value_at_outlined(token, ray.at(middle)));
         let is_before = (is_in & was_in) | (!is_in & !was_in);
         lo = L::select(is_before, middle, lo);
         hi = L::select(is_before, hi, middle);

@@ -7,6 +7,9 @@ use super::volume::Stored;
 use crate::transfer::LutEntry;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub};
 
+/// Most rays of a packet.
+pub(super) const MOST_LANES: usize = 16;
+
 /// One real number per ray of a packet.
 pub(super) trait Lanes:
     Copy
@@ -37,8 +40,8 @@ pub(super) trait Lanes:
     fn splat(token: Self::Token, value: f32) -> Self;
     /// A number for each lane.
     fn from_fn(token: Self::Token, value: impl FnMut(usize) -> f64) -> Self;
-    /// The number of one lane.
-    fn lane(self, lane: usize) -> f32;
+    /// The number of each lane; zeros where there is no lane.
+    fn to_array(self) -> [f32; MOST_LANES];
 
     /// `self · factor + term`, rounded once or twice.
     fn mul_add(self, factor: Self, term: Self) -> Self;
@@ -75,13 +78,15 @@ pub(super) trait Lanes:
         row: usize,
         slice: usize,
     ) -> [[Self; 2]; 4];
-    /// Colours at one place of a table and logarithms at another and after it.
+    /// Small numbers at places of a table.
+    fn bytes(token: Self::Token, table: &[u8], index: Self::Index) -> Self;
+    /// Entries at one place of a table and the logarithms at another.
     fn entries(
         token: Self::Token,
         table: &[LutEntry],
-        color_at: Self::Index,
-        log2_at: Self::Index,
-    ) -> ([Self; 3], [Self; 2]);
+        nearest: Self::Index,
+        other: Self::Index,
+    ) -> ([Self; 4], Self);
 
     /// Linear interpolation.
     #[inline(always)]

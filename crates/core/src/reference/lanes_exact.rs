@@ -1,6 +1,6 @@
 //! One f64 lane: the truth.
 
-use super::lanes::{Lanes, Mask};
+use super::lanes::{Lanes, MOST_LANES, Mask};
 use super::volume::Stored;
 use crate::transfer::LutEntry;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
@@ -34,8 +34,10 @@ impl Lanes for Exact {
         Self(value(0))
     }
 
-    fn lane(self, _: usize) -> f32 {
-        self.0 as f32
+    fn to_array(self) -> [f32; MOST_LANES] {
+        let mut lanes = [0.0; MOST_LANES];
+        lanes[0] = self.0 as f32;
+        lanes
     }
 
     fn mul_add(self, factor: Self, term: Self) -> Self {
@@ -98,10 +100,12 @@ impl Lanes for Exact {
         })
     }
 
-    fn entries((): (), table: &[LutEntry], color_at: usize, log2_at: usize) -> ([Self; 3], [Self; 2]) {
-        let [r, g, b, _] = table[color_at];
-        let log2 = [table[log2_at][3], table[log2_at + 1][3]];
-        ([r, g, b].map(|c| Self(f64::from(c))), log2.map(|c| Self(f64::from(c))))
+    fn bytes((): (), table: &[u8], index: usize) -> Self {
+        Self(f64::from(table[index]))
+    }
+
+    fn entries((): (), table: &[LutEntry], nearest: usize, other: usize) -> ([Self; 4], Self) {
+        (table[nearest].map(|number| Self(f64::from(number))), Self(f64::from(table[other][3])))
     }
 }
 

@@ -1,16 +1,24 @@
 //! Sixteen f32 lanes: the fast path.
 
-use super::lanes::{Lanes, Mask};
+use super::lanes::{Lanes, MOST_LANES, Mask};
 use super::volume::Stored;
 use crate::transfer::LutEntry;
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x16, i32x16, mask32x16, u32x16};
-
-const COUNT: usize = 16;
+use fearless_simd::{f32x4, f32x16, i32x16, mask32x16, u32x16};
 
 /// Polynomial of 2ˣ on [−½, ½], highest power first (Cephes, `exp2f`).
 const EXP2: [f32; 7] =
     [1.535_336_2e-4, 1.339_887_4e-3, 9.618_437e-3, 5.550_332_5e-2, 2.402_264_8e-1, 6.931_472e-1, 1.0];
+
+/// An array of what an expression is for each lane, written out: a loop would go through memory.
+macro_rules! each_lane {
+    ($lane:ident => $value:expr) => {
+        each_lane!($lane => $value; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15)
+    };
+    ($lane:ident => $value:expr; $($number:literal)*) => {
+        [$({ let $lane = $number; $value }),*]
+    };
+}
 
 impl<S: Simd> Mask for mask32x16<S> {
     #[inline(always)]
@@ -37,7 +45,7 @@ impl<S: Simd> Lanes for f32x16<S> {
 
     #[inline(always)]
     fn from_fn(token: S, mut value: impl FnMut(usize) -> f64) -> Self {
-        let mut values = [0.0; COUNT];
+        let mut values = [0.0; MOST_LANES];
         for (lane, slot) in values.iter_mut().enumerate() {
             *slot = value(lane) as f32;
         }
@@ -45,8 +53,8 @@ impl<S: Simd> Lanes for f32x16<S> {
     }
 
     #[inline(always)]
-    fn lane(self, lane: usize) -> f32 {
-        self[lane]
+    fn to_array(self) -> [f32; MOST_LANES] {
+        SimdBase::to_array(self)
     }
 
     #[inline(always)]
@@ -131,41 +139,61 @@ impl<S: Simd> Lanes for f32x16<S> {
         row: usize,
         slice: usize,
     ) -> [[Self; 2]; 4] {
-        // Rows of one length, so that one test of bounds does for all.
+        // Rows of one length, so that one test of bounds for each lane does for all.
         let count = voxels.len() - row - slice;
-        let rows = [0, row, slice, row + slice].map(|start| &voxels[start..start + count]);
-        let mut pairs = [[T::Pair::default(); COUNT]; 4];
+        let front_low = &voxels[..count];
+        let front_high = &voxels[row..row + count];
+        let back_low = &voxels[slice..slice + count];
+        let back_high = &voxels[row + slice..row + slice + count];
         let index = index.to_array();
-        for lane in 0..COUNT {
-            let at = index[lane] as usize;
-            for (pairs, row) in pairs.iter_mut().zip(rows) {
-                pairs[lane] = T::pair(row[at], row[at + 1]);
-            }
-        }
-        let [a, b, c, d] = pairs;
-        [T::split(token, a), T::split(token, b), T::split(token, c), T::split(token, d)]
+        let pairs = each_lane!(lane => {
+            let second = index[lane] as usize + 1;
+            let first = second - 1;
+            [
+                T::pair(front_low[first], front_low[second]),
+                T::pair(front_high[first], front_high[second]),
+                T::pair(back_low[first], back_low[second]),
+                T::pair(back_high[first], back_high[second]),
+            ]
+        });
+        [
+            T::split(token, each_lane!(lane => pairs[lane][0])),
+            T::split(token, each_lane!(lane => pairs[lane][1])),
+            T::split(token, each_lane!(lane => pairs[lane][2])),
+            T::split(token, each_lane!(lane => pairs[lane][3])),
+        ]
     }
 
     #[inline(always)]
-    fn entries(
-        token: S,
-        table: &[LutEntry],
-        color_at: u32x16<S>,
-        log2_at: u32x16<S>,
-    ) -> ([Self; 3], [Self; 2]) {
-        let (color_at, log2_at) = (color_at.to_array(), log2_at.to_array());
-        let (mut rgb, mut log2) = ([[0.0; COUNT]; 3], [[0.0; COUNT]; 2]);
-        for lane in 0..COUNT {
-            let color = &table[color_at[lane] as usize];
-            for (channel, lanes) in rgb.iter_mut().enumerate() {
-                lanes[lane] = color[channel];
-            }
-            let at = log2_at[lane] as usize;
-            log2[0][lane] = table[at][3];
-            log2[1][lane] = table[at + 1][3];
-        }
-        let [r, g, b] = rgb;
-        let rgb = [Self::load_array(token, r), Self::load_array(token, g), Self::load_array(token, b)];
-        (rgb, [Self::load_array(token, log2[0]), Self::load_array(token, log2[1])])
+    fn bytes(token: S, table: &[u8], index: u32x16<S>) -> Self {
+        let index = index.to_array();
+        let numbers = each_lane!(lane => u32::from(table[index[lane] as usize]));
+        u32x16::load_array(token, numbers).to_float()
     }
+
+    #[inline(always)]
+    fn entries(token: S, table: &[LutEntry], nearest: u32x16<S>, other: u32x16<S>) -> ([Self; 4], Self) {
+        let (nearest, other) = (nearest.to_array(), other.to_array());
+        let log2 = each_lane!(lane => table[other[lane] as usize][3]);
+        let [a, b, c, d] = [
+            quarter(token, table, &nearest[..4]),
+            quarter(token, table, &nearest[4..8]),
+            quarter(token, table, &nearest[8..12]),
+            quarter(token, table, &nearest[12..]),
+        ];
+        let entries = [
+            a[0].combine(b[0]).combine(c[0].combine(d[0])),
+            a[1].combine(b[1]).combine(c[1].combine(d[1])),
+            a[2].combine(b[2]).combine(c[2].combine(d[2])),
+            a[3].combine(b[3]).combine(c[3].combine(d[3])),
+        ];
+        (entries, Self::load_array(token, log2))
+    }
+}
+
+/// The numbers of four entries, channel by channel.
+#[inline(always)]
+fn quarter<S: Simd>(token: S, table: &[LutEntry], at: &[u32]) -> [f32x4<S>; 4] {
+    let entry = [table[at[0] as usize], table[at[1] as usize], table[at[2] as usize], table[at[3] as usize]];
+    f32x4::load_four_interleaved(token, entry.as_flattened())
 }

@@ -39,10 +39,16 @@ fn before<L: Lanes>(token: L::Token, coordinate: L, count: usize) -> (L, L) {
     (before, along - before)
 }
 
+/// Between the entries before and after.
 #[inline(always)]
 fn entry_at<L: Lanes>(lut: &Lut, token: L::Token, before: L, fraction: L) -> Entry<L> {
-    let is_before_nearest = fraction.lt(L::splat(token, 0.5));
-    let nearest = L::select(is_before_nearest, before, before + 1.0);
-    let ([x, y, z], [below, above]) = L::entries(token, lut.entries(), nearest.to_index(), before.to_index());
-    Entry { rgb: Vec3 { x, y, z }, log2: below.mix(above, fraction) }
+    let (half, one) = (L::splat(token, 0.5), L::splat(token, 1.0));
+    let is_before_nearest = fraction.lt(half);
+    let after = before + 1.0;
+    let nearest = L::select(is_before_nearest, before, after);
+    let other = L::select(is_before_nearest, after, before);
+    let to_other = L::select(is_before_nearest, fraction, one - fraction);
+    let ([x, y, z, log2], other_log2) =
+        L::entries(token, lut.entries(), nearest.to_index(), other.to_index());
+    Entry { rgb: Vec3 { x, y, z }, log2: log2.mix(other_log2, to_other) }
 }

@@ -18,6 +18,7 @@ mod lut;
 mod ray;
 mod renderer;
 mod shade;
+mod skip;
 mod value_sum;
 mod vector;
 mod volume;

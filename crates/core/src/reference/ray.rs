@@ -1,10 +1,12 @@
 //! Rays through texture space: where they meet the visible part of the volume, and where they are sampled.
 
 use super::lanes::Lanes;
+use super::skip::{Blocks, SkipSampler};
 use super::vector::Vec3;
 use crate::cast::CastParameters;
 use crate::view::RayField;
-use glam::DVec3;
+use glam::{BVec3, DMat3, DVec2, DVec3};
+use std::ops::Range;
 
 /// Direction components nearer to zero than this count as this far from it, so that no division overflows.
 const PARALLEL: f64 = 1e-12;
@@ -33,6 +35,7 @@ pub(super) struct PixelRay {
 
 impl PixelRay {
     /// The ray of a pixel; its centre is at (x + ½, y + ½).
+    #[inline(always)]
     pub(super) fn new(rays: &RayField, parameters: &CastParameters, x: usize, y: usize) -> Self {
         let (origin, direction) = rays.at(x as f64 + 0.5, y as f64 + 0.5);
         let (near, far) = visible_interval(origin, direction, rays.depth_range_m, parameters);
@@ -101,6 +104,12 @@ impl<L: Lanes> Ray<L> {
         self.step.mul_add(index, self.first)
     }
 
+    /// Its way through the blocks of a map.
+    #[inline(always)]
+    pub(super) fn blocks<'a>(&self, token: L::Token, skip: SkipSampler<'a>) -> Blocks<'a, L> {
+        skip.along(token, self.first, self.step)
+    }
+
     /// Depth of a sample, metres.
     #[inline(always)]
     pub(super) fn depth_m(&self, index: L) -> L {
@@ -115,12 +124,55 @@ pub fn sample_count(rays: &RayField, parameters: &CastParameters, x: f64, y: f64
     samples_between(near, far, parameters.metric_from_texture.as_dmat3() * direction, parameters)
 }
 
+/// Columns and rows of the pixels whose rays may cross the visible box.
+pub(super) fn pixels_of_box(
+    rays: &RayField,
+    parameters: &CastParameters,
+    [width, height]: [u32; 2],
+) -> [Range<usize>; 2] {
+    let whole = [0..width as usize, 0..height as usize];
+    // Either the origin or the direction depends on the pixel: a point is origin + depth · direction, linear in
+    // (column · depth, row · depth, depth) or (column, row, depth).
+    let is_perspective = rays.origin_dx == DVec3::ZERO;
+    let point_from_pixel = if is_perspective {
+        DMat3::from_cols(rays.direction_dx, rays.direction_dy, rays.direction)
+    } else {
+        DMat3::from_cols(rays.origin_dx, rays.origin_dy, rays.direction)
+    };
+    let pixel_from_point = point_from_pixel.inverse();
+    let (box_lo, box_hi) = (parameters.box_lo.as_dvec3(), parameters.box_hi.as_dvec3());
+    let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for corner in 0..8 {
+        let is_high = BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0);
+        let pixel = pixel_from_point * (DVec3::select(is_high, box_hi, box_lo) - rays.origin);
+        let pixel = if !is_perspective {
+            pixel.truncate()
+        } else if pixel.z > 0.0 {
+            pixel.truncate() / pixel.z
+        } else {
+            return whole;
+        };
+        if !pixel.is_finite() {
+            return whole;
+        }
+        (lo, hi) = (lo.min(pixel), hi.max(pixel));
+    }
+    // A pixel more on each side for rounding.
+    let between = |lo: f64, hi: f64, count: u32| {
+        let bounded = |at: f64| at.clamp(0.0, f64::from(count)) as usize;
+        bounded(lo.floor() - 1.0)..bounded(hi.ceil() + 1.0)
+    };
+    [between(lo.x, hi.x, width), between(lo.y, hi.y, height)]
+}
+
+#[inline(always)]
 fn samples_between(near: f64, far: f64, metric_direction: DVec3, parameters: &CastParameters) -> u32 {
     let length = (far - near).max(0.0) * metric_direction.length();
     (length * f64::from(parameters.sampling_factor)).ceil() as u32
 }
 
 /// Depths at which a ray enters and leaves the visible box and half-space; empty if the first is not smaller.
+#[inline(always)]
 fn visible_interval(
     origin: DVec3,
     direction: DVec3,

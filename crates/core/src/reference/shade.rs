@@ -3,8 +3,9 @@
 use super::classify::{Classified, Classify};
 use super::context::Context;
 use super::gradient::gradient_at;
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Mask};
 use super::ray::Ray;
+use super::skip::Walk;
 use super::vector::Vec3;
 use crate::cast::{
     AMBIENT_RADIUS, AMBIENT_SAMPLES, DIRECTIONAL_STEPS, FLAT_SQUARED, PHONG, SHADING_STEP, SHADOW_SAMPLES,
@@ -100,10 +101,19 @@ fn transmittance_along<C: Classify, L: Lanes>(
     step: Vec3<L>,
     count: u32,
 ) -> L {
-    let mut log2 = L::splat(token, 0.0);
-    for i in 1..=count {
-        let along = step.mul_add(L::splat(token, i as f32), position);
-        log2 += log2_transmittance_inside::<C, L>(context, token, along);
+    let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
+    let blocks = match context.shading_skip() {
+        Some(skip) => Some(skip.along(token, position, step)),
+        None => None,
+    };
+    let mut log2 = zero;
+    let mut walk = Walk::new(token, one, L::splat(token, (count + 1) as f32), blocks);
+    while walk.is_active.any() {
+        walk.leap(token, walk.is_active);
+        let along = step.mul_add(walk.index, position);
+        let of_sample = log2_transmittance_inside::<C, L>(context, token, along);
+        log2 += L::select(walk.is_active, of_sample, zero);
+        walk.advance();
     }
     log2
 }
@@ -136,7 +146,7 @@ fn ambient<C: Classify, L: Lanes>(context: &Context<'_>, token: L::Token, positi
     let mut sum = L::splat(token, 0.0);
     for direction in AMBIENT_DIRECTIONS {
         let offset = Vec3::splat(token, context.voxel_from_metric * (direction * AMBIENT_RADIUS));
-        let log2 = log2_transmittance_inside::<C, L>(context, token, position + offset);
+        let log2 = transmittance_along::<C, L>(context, token, position, offset, 1);
         sum += (log2 * AMBIENT_RADIUS).exp2();
     }
     sum * (1.0 / AMBIENT_SAMPLES as f32)

@@ -5,6 +5,7 @@ use super::context::Context;
 use super::lanes::{Lanes, Mask};
 use super::lut::lut_at;
 use super::ray::Ray;
+use super::skip::Walk;
 use std::marker::PhantomData;
 
 /// Adds the values up.
@@ -39,20 +40,21 @@ impl<P: Projection> Accumulate for ValueSum<P> {
     #[inline(always)]
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-        let mut sum = zero;
-        let mut index = zero;
-        let mut is_active = index.lt(ray.sample_count);
-        while is_active.any() {
-            sum += L::select(is_active, context.value_at(token, ray.at(index)), zero);
-            index = index + 1.0;
-            is_active = is_active & index.lt(ray.sample_count);
+        let (mut sum, mut samples) = (zero, zero);
+        let mut walk = Walk::along(context, token, ray);
+        while walk.is_active.any() {
+            walk.leap(token, walk.is_active);
+            sum += L::select(walk.is_active, context.value_at(token, ray.at(walk.index)), zero);
+            samples += L::select(walk.is_active, one, zero);
+            walk.advance();
         }
         let value = P::value(context, token, ray, sum).min(one);
         Pixels {
             rgb: lut_at(&context.parameters.lut, token, value).rgb,
             alpha: one,
             depth_m: ray.depth_m(zero),
-            samples: ray.sample_count,
+            samples,
+            map_reads: walk.map_reads,
         }
     }
 }

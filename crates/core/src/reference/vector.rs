@@ -30,6 +30,12 @@ impl<L: Lanes> Vec3<L> {
         }
     }
 
+    /// Products of the coordinates.
+    #[inline(always)]
+    pub(super) fn scaled(self, scale: Self) -> Self {
+        Self { x: self.x * scale.x, y: self.y * scale.y, z: self.z * scale.z }
+    }
+
     #[inline(always)]
     pub(super) fn dot(self, other: Self) -> L {
         self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))

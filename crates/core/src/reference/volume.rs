@@ -86,7 +86,10 @@ impl Stored for f32 {
     }
 }
 
-/// Voxels with their outermost layer repeated once around, so that every trilinear sample inside the volume
+/// Layers around the volume: what a trilinear sample one voxel outside reads.
+const PADDING: usize = 2;
+
+/// Voxels with their outermost layer repeated around, so that every trilinear sample up to one voxel outside the volume
 /// reads its eight neighbours without a test.
 #[derive(Debug)]
 pub(super) struct PaddedVoxels {
@@ -98,14 +101,14 @@ pub(super) struct PaddedVoxels {
 
 impl PaddedVoxels {
     pub(super) fn new(dims: [usize; 3], voxels: &StoredVoxels) -> Self {
-        let [width, height, depth] = dims.map(|n| n as f32);
         let voxels = match voxels {
             StoredVoxels::U8(v) => StoredVoxels::U8(padded(dims, v)),
             StoredVoxels::U16(v) => StoredVoxels::U16(padded(dims, v)),
             StoredVoxels::F32(v) => StoredVoxels::F32(padded(dims, v)),
         };
-        let row = dims[0] + 2;
-        Self { voxels, dims: Vec3A::new(width, height, depth), row, slice: row * (dims[1] + 2) }
+        let row = dims[0] + 2 * PADDING;
+        let slice = row * (dims[1] + 2 * PADDING);
+        Self { voxels, dims: Vec3A::from(dims.map(|n| n as f32)), row, slice }
     }
 
     /// Voxels held, the padding with them.
@@ -117,31 +120,36 @@ impl PaddedVoxels {
         }
     }
 
-    /// The eight voxels around a position, from the lower neighbour on: see [`Lanes::neighbours`].
+    /// Pairs of neighbours along x, from the voxel on that is `offset` away from a cell's first one; in rows `row` and
+    /// slices `slice` apart: see [`Lanes::neighbours`].
     #[inline(always)]
-    fn neighbours<L: Lanes>(&self, token: L::Token, lower: Vec3<L>) -> [[L; 2]; 4] {
-        let Self { row, slice, .. } = *self;
-        let index = L::to_array_index([lower.x, lower.y, lower.z], row, slice);
+    fn neighbours<L: Lanes>(
+        &self,
+        token: L::Token,
+        index: L::Index,
+        offset: isize,
+        row: usize,
+        slice: usize,
+    ) -> [[L; 2]; 4] {
+        let start = (1 + self.row + self.slice).wrapping_add_signed(offset);
         match &self.voxels {
-            StoredVoxels::U8(v) => L::neighbours(token, v, index, row, slice),
-            StoredVoxels::U16(v) => L::neighbours(token, v, index, row, slice),
-            StoredVoxels::F32(v) => L::neighbours(token, v, index, row, slice),
+            StoredVoxels::U8(v) => L::neighbours(token, &v[start..], index, row, slice),
+            StoredVoxels::U16(v) => L::neighbours(token, &v[start..], index, row, slice),
+            StoredVoxels::F32(v) => L::neighbours(token, &v[start..], index, row, slice),
         }
     }
 }
 
 fn padded<T: Stored>([width, height, depth]: [usize; 3], voxels: &[T]) -> Vec<T> {
-    let source_row = |y: usize, z: usize| {
-        let start = (z * height + y) * width;
-        &voxels[start..start + width]
-    };
-    (0..depth + 2)
+    let inside = |i: usize, count: usize| i.clamp(PADDING, PADDING + count - 1) - PADDING;
+    (0..depth + 2 * PADDING)
         .into_par_iter()
-        .flat_map_iter(|z| (0..height + 2).map(move |y| (y, z)))
+        .flat_map_iter(|z| (0..height + 2 * PADDING).map(move |y| (y, z)))
         .flat_map_iter(|(y, z)| {
-            let source = source_row(y.clamp(1, height) - 1, z.clamp(1, depth) - 1);
-            let (first, last) = (source[0], source[width - 1]);
-            std::iter::once(first).chain(source.iter().copied()).chain(std::iter::once(last))
+            let start = (inside(z, depth) * height + inside(y, height)) * width;
+            let row = &voxels[start..start + width];
+            let [first, last] = [row[0], row[width - 1]].map(|end| std::iter::repeat_n(end, PADDING));
+            first.chain(row.iter().copied()).chain(last)
         })
         .collect()
 }
@@ -154,6 +162,28 @@ pub(super) struct Sampler<'a> {
     offset: f32,
 }
 
+/// The eight voxels around a position, and where between them it is.
+#[derive(Debug, Clone, Copy)]
+struct Cell<L: Lanes> {
+    index: L::Index,
+    fraction: Vec3<L>,
+}
+
+impl<L: Lanes> Cell<L> {
+    /// Trilinear interpolation of pairs along x.
+    #[inline(always)]
+    fn interpolate(&self, [front_low, front_high, back_low, back_high]: [[L; 2]; 4]) -> L {
+        let Vec3 { x, y, z } = self.fraction;
+        let front = mix(front_low, x).mix(mix(front_high, x), y);
+        front.mix(mix(back_low, x).mix(mix(back_high, x), y), z)
+    }
+}
+
+#[inline(always)]
+fn mix<L: Lanes>([first, second]: [L; 2], t: L) -> L {
+    first.mix(second, t)
+}
+
 impl<'a> Sampler<'a> {
     pub(super) fn new(voxels: &'a PaddedVoxels, (scale, offset): (f64, f64)) -> Self {
         Self { voxels, scale: scale as f32, offset: offset as f32 }
@@ -164,24 +194,75 @@ impl<'a> Sampler<'a> {
         self.voxels.dims
     }
 
+    #[inline(always)]
+    fn cell<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> Cell<L> {
+        let largest = Vec3::splat(token, self.voxels.dims);
+        let inside = position.max(Vec3::splat(token, Vec3A::ZERO)).min(largest);
+        // The lower neighbour's centre is half a voxel before, and its index one higher in the padded volume.
+        let shifted = Vec3 { x: inside.x + 0.5, y: inside.y + 0.5, z: inside.z + 0.5 };
+        let lower = shifted.floor();
+        let index = L::to_array_index([lower.x, lower.y, lower.z], self.voxels.row, self.voxels.slice);
+        Cell { index, fraction: shifted - lower }
+    }
+
+    #[inline(always)]
+    fn normalised<L: Lanes>(&self, stored: L) -> L {
+        L::normalised(stored, self.scale, self.offset)
+    }
+
     /// The normalised value at a position, clamped to the volume.
     #[inline(always)]
     pub(super) fn value_at<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> L {
-        let zero = L::splat(token, 0.0);
-        let largest = Vec3::splat(token, self.voxels.dims);
-        let inside = position.max(Vec3 { x: zero, y: zero, z: zero }).min(largest);
-        // The lower neighbour, whose centre is at `index − ½` for its padded index.
-        let shifted = Vec3 { x: inside.x + 0.5, y: inside.y + 0.5, z: inside.z + 0.5 };
-        let lower = shifted.floor();
-        let fraction = shifted - lower;
-        let [front_low, front_high, back_low, back_high] = self.voxels.neighbours(token, lower);
-        let front = mix(front_low, fraction.x).mix(mix(front_high, fraction.x), fraction.y);
-        let back = mix(back_low, fraction.x).mix(mix(back_high, fraction.x), fraction.y);
-        L::normalised(front.mix(back, fraction.z), self.scale, self.offset)
+        let cell = self.cell(token, position);
+        let PaddedVoxels { row, slice, .. } = *self.voxels;
+        self.normalised(cell.interpolate(self.voxels.neighbours(token, cell.index, 0, row, slice)))
     }
-}
 
-#[inline(always)]
-fn mix<L: Lanes>([first, second]: [L; 2], t: L) -> L {
-    first.mix(second, t)
+    /// Differences of the normalised values one voxel before and after a position, along each axis.
+    #[inline(always)]
+    pub(super) fn differences_at<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> Vec3<L> {
+        let cell = self.cell(token, position);
+        let PaddedVoxels { row, slice, .. } = *self.voxels;
+        let (along_y, along_z) = (row as isize, slice as isize);
+        // Of the four rows around the position, four voxels each; of the eight rows around these, two.
+        let before_x = self.voxels.neighbours(token, cell.index, -1, row, slice);
+        let after_x = self.voxels.neighbours(token, cell.index, 1, row, slice);
+        let beside_y = self.voxels.neighbours(token, cell.index, -along_y, 3 * row, slice);
+        let beside_z = self.voxels.neighbours(token, cell.index, -along_z, row, 3 * slice);
+        let [a, b, c, d] = [
+            [before_x[0][1], after_x[0][0]],
+            [before_x[1][1], after_x[1][0]],
+            [before_x[2][1], after_x[2][0]],
+            [before_x[3][1], after_x[3][0]],
+        ];
+        let before_y = [beside_y[0], a, beside_y[2], c];
+        let after_y = [b, beside_y[1], d, beside_y[3]];
+        let before_z = [beside_z[0], beside_z[1], a, b];
+        let after_z = [c, d, beside_z[2], beside_z[3]];
+        Vec3 {
+            x: self.difference(&cell, before_x, after_x),
+            y: self.difference(&cell, before_y, after_y),
+            z: self.difference(&cell, before_z, after_z),
+        }
+    }
+
+    #[inline(always)]
+    fn difference<L: Lanes>(&self, cell: &Cell<L>, before: [[L; 2]; 4], after: [[L; 2]; 4]) -> L {
+        self.normalised(cell.interpolate(after)) - self.normalised(cell.interpolate(before))
+    }
+
+    /// The normalised values at four corners of a cube of two voxels around a position: (+,−,−), (−,−,+), (−,+,−),
+    /// (+,+,+).
+    #[inline(always)]
+    pub(super) fn tetrahedron_at<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> [L; 4] {
+        let cell = self.cell(token, position);
+        let PaddedVoxels { row, slice, .. } = *self.voxels;
+        let (y, z) = (row as isize, slice as isize);
+        let mut values = [L::splat(token, 0.0); 4];
+        for (value, offset) in values.iter_mut().zip([1 - y - z, -1 - y + z, -1 + y - z, 1 + y + z]) {
+            let neighbours = self.voxels.neighbours(token, cell.index, offset, row, slice);
+            *value = self.normalised(cell.interpolate(neighbours));
+        }
+        values
+    }
 }

@@ -6,11 +6,13 @@
 mod analytic;
 mod clipping;
 mod gradients;
+mod lanes;
 mod orientation;
 mod properties;
 mod resolution;
 mod scene;
 mod shading;
+mod skipping;
 mod stereo;
 mod storage;
 mod tolerance;

@@ -115,7 +115,7 @@ fn settings() -> impl Strategy<Value = Settings> {
 }
 
 /// Eyes in, near and far from the volume, many of them looking along an axis.
-fn views() -> impl Strategy<Value = View> {
+pub(crate) fn views() -> impl Strategy<Value = View> {
     let place = || prop_oneof![Just(0.0), Just(0.02), Just(-0.5), -0.3..0.3_f64];
     let eye = prop::array::uniform3(place());
     let towards = prop_oneof![
@@ -165,7 +165,7 @@ proptest! {
             Caster::new(&volume)
         };
         let rays = u64::from(view.size[0]) * u64::from(view.size[1]);
-        for cast in [caster.cast(&parameters, &[view]).remove(0), caster.cast_exactly(&parameters, &[view]).remove(0)] {
+        for cast in [caster.cast(&parameters, None, &[view]).remove(0), caster.cast_exactly(&parameters, None, &[view]).remove(0)] {
             if let Err(reason) = check(&cast, &view) {
                 prop_assert!(false, "{}", reason);
             }

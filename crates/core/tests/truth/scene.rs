@@ -31,7 +31,7 @@ pub(crate) fn cast_at(
     view: &View,
 ) -> Cast {
     let parameters = CastParameters::new(settings, &Placement::new(volume, world_from_patient));
-    Caster::new(volume).cast_exactly(&parameters, std::slice::from_ref(view)).remove(0)
+    Caster::new(volume).cast_exactly(&parameters, None, std::slice::from_ref(view)).remove(0)
 }
 
 /// A volume of values from 0 to 1 by a function of the position in voxels (centres at ½).

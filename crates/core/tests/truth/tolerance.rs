@@ -31,3 +31,16 @@ pub(crate) const DISPARITY_PIXELS: f64 = 0.15;
 /// Opacity of a pre-integrated ray through a ramp: the ends of the table's segments are whole entries of a finer one, so
 /// segments are off by up to an 8192th of the value range. As little as the project promises for a slab.
 pub(crate) const PREINTEGRATED_OPACITY: f64 = 1e-3;
+
+/// Channel difference of f32 lanes and the f64 lane: rounding over some hundred samples.
+pub(crate) const LANES_COLOR: f64 = 2e-3;
+
+/// DSSIM of pictures by f32 lanes and the f64 lane.
+pub(crate) const LANES_DSSIM: f64 = 1e-4;
+
+/// Share of the pixels by f32 lanes that may be other ones: rays that graze a surface or an edge of the volume, equal
+/// extremes.
+pub(crate) const LANES_OTHER_PIXELS: f64 = 0.01;
+
+/// Difference of two depths that are the same hit, metres: a tenth of a voxel.
+pub(crate) const LANES_DEPTH_M: f64 = 1e-3;

@@ -100,7 +100,7 @@ fn volumes_and_settings_alternate_on_one_renderer() {
                 let settings = Settings { mode, ..Settings::new(volume.full_window(), transfer(0.5)) };
                 let parameters = CastParameters::new(&settings, &placement(volume));
                 let cpu =
-                    wheatstone_core::reference::Caster::new(volume).cast_exactly(&parameters, &[outside()]).remove(0);
+                    wheatstone_core::reference::Caster::new(volume).cast_exactly(&parameters, None, &[outside()]).remove(0);
                 shown.push((renderer.prepare(gpu, &uploaded, parameters).unwrap(), cpu));
             }
         }

@@ -120,7 +120,7 @@ pub(crate) fn cast_on_cpu(
     parameters: &CastParameters,
     views: &[View],
 ) -> Vec<Cast> {
-    Caster::with_storage(volume, storage_kind(format)).cast_exactly(parameters, views)
+    Caster::with_storage(volume, storage_kind(format)).cast_exactly(parameters, None, views)
 }
 
 pub(crate) fn cast_on_gpu(

@@ -1,0 +1,216 @@
+//! Leaping over empty blocks.
+
+use super::context::Context;
+use super::lanes::{Lanes, Mask};
+use super::ray::Ray;
+use super::vector::Vec3;
+use crate::scene::Mode;
+use crate::skip::{SkipMap, Structure};
+use glam::Vec3A;
+
+/// Steps shorter than this along an axis never leave a block along it; in block units.
+const PARALLEL: f32 = 1e-20;
+
+/// How far before the edge of what is empty a leap ends at the latest, in block units: more than positions are off by
+/// rounding.
+const EDGE: f32 = 1.0 / 1024.0;
+
+/// A skip map as rays in voxel space read it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SkipSampler<'a> {
+    map: &'a SkipMap,
+    blocks_from_voxel: Vec3A,
+    last_block: Vec3A,
+    /// Distance, in blocks, up to which a block counts as occupied: samples read that much further than their own block.
+    margin: f32,
+}
+
+impl<'a> SkipSampler<'a> {
+    /// Reads a map for rays with the given length of a step, in voxel lengths.
+    pub(super) fn new(map: &'a SkipMap, mode: Mode, is_preintegrated: bool, step_length: f32) -> Self {
+        let sides = map.grid().block_size().sides();
+        let shortest = sides.into_iter().fold(f32::INFINITY, |shortest, side| shortest.min(side as f32));
+        // Both ends of a pre-integrated step may be half a voxel, that of the halo, away from the block. Neighbouring
+        // samples in empty blocks are on the same side of an isovalue if the blocks touch.
+        let margin = match mode {
+            Mode::Isosurface { .. } => (step_length / shortest).ceil() - 1.0,
+            _ if is_preintegrated => (0.5 * (step_length - 1.0) / shortest).ceil(),
+            _ => 0.0,
+        };
+        Self {
+            map,
+            blocks_from_voxel: Vec3A::from(sides.map(|side| side as f32)).recip(),
+            last_block: Vec3A::from(map.grid().dims().map(|n| (n - 1) as f32)),
+            margin: margin.max(0.0),
+        }
+    }
+
+    /// Along rays by their first position and step in voxel space.
+    #[inline(always)]
+    pub(super) fn along<L: Lanes>(self, token: L::Token, first: Vec3<L>, step: Vec3<L>) -> Blocks<'a, L> {
+        let scale = Vec3::splat(token, self.blocks_from_voxel);
+        let step = step.scaled(scale);
+        let octant = match self.map.structure() {
+            Structure::Occupancy | Structure::Distance => L::splat(token, 0.0),
+            Structure::Anisotropic => {
+                let zero = L::splat(token, 0.0);
+                let bit = |along: L, bit: f32| L::select(along.lt(zero), L::splat(token, bit), zero);
+                bit(step.x, 1.0) + bit(step.y, 2.0) + bit(step.z, 4.0)
+            }
+        };
+        Blocks {
+            sampler: self,
+            first: first.scaled(scale),
+            step,
+            exits: [Exit::new(token, step.x), Exit::new(token, step.y), Exit::new(token, step.z)],
+            octant,
+        }
+    }
+}
+
+/// When rays leave blocks along an axis.
+#[derive(Debug, Clone, Copy)]
+struct Exit<L> {
+    /// Steps per block, signed; 0 for rays that never leave along this axis.
+    steps_per_block: L,
+    /// Steps per block in the direction of the ray.
+    steps_forward: L,
+}
+
+impl<L: Lanes> Exit<L> {
+    #[inline(always)]
+    fn new(token: L::Token, step: L) -> Self {
+        let is_parallel = step.abs().lt(L::splat(token, PARALLEL));
+        let steps = L::splat(token, 1.0) / L::select(is_parallel, L::splat(token, PARALLEL), step);
+        Self {
+            steps_per_block: L::select(is_parallel, L::splat(token, 0.0), steps),
+            steps_forward: steps.abs(),
+        }
+    }
+
+    /// Steps to the edge that is `reach` blocks from the middle of a block.
+    #[inline(always)]
+    fn steps(&self, block: L, position: L, reach: L) -> L {
+        (block + 0.5 - position).mul_add(self.steps_per_block, reach * self.steps_forward)
+    }
+}
+
+/// Rays through the blocks of a map.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Blocks<'a, L> {
+    sampler: SkipSampler<'a>,
+    /// Position of sample 0, block units.
+    first: Vec3<L>,
+    /// From one sample to the next, block units.
+    step: Vec3<L>,
+    exits: [Exit<L>; 3],
+    /// The octant that the rays go to.
+    octant: L,
+}
+
+/// What a map says of the blocks that samples are in.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look<L: Lanes> {
+    pub(super) is_empty: L::Mask,
+    /// Steps to the first sample that may be outside the empty blocks, or outside the occupied block; at least 1.
+    pub(super) steps: L,
+}
+
+impl<L: Lanes> Blocks<'_, L> {
+    /// Looks the blocks of samples up (DM Eq. 14; Eq. 7 for occupied ones).
+    #[inline(always)]
+    pub(super) fn look(&self, token: L::Token, index: L) -> Look<L> {
+        let SkipSampler { map, last_block, margin, .. } = self.sampler;
+        let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
+        let position = self.step.mul_add(index, self.first);
+        let block = position.floor().max(Vec3::splat(token, Vec3A::ZERO)).min(Vec3::splat(token, last_block));
+        let [columns, rows, slices] = map.grid().dims();
+        let in_octants = self.octant.mul_add(L::splat(token, slices as f32), block.z);
+        let at = L::to_array_index([block.x, block.y, in_octants], columns, columns * rows);
+        let distance = L::bytes(token, map.distances(), at) - margin;
+        let reach = distance.max(one) - (0.5 + EDGE);
+        let [x, y, z] = &self.exits;
+        let steps = x
+            .steps(block.x, position.x, reach)
+            .min(y.steps(block.y, position.y, reach))
+            .min(z.steps(block.z, position.z, reach));
+        Look { is_empty: zero.lt(distance), steps: (-(-steps).floor()).max(one) }
+    }
+}
+
+/// Where the rays of a packet are; each goes at its own pace.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Walk<'a, L: Lanes> {
+    /// The next sample.
+    pub(super) index: L,
+    /// Which rays go on.
+    pub(super) is_active: L::Mask,
+    /// Which rays that go on have leapt since their last sample.
+    pub(super) has_leapt: L::Mask,
+    /// The first sample that may be outside the occupied block.
+    leave: L,
+    end: L,
+    blocks: Option<Blocks<'a, L>>,
+    /// Reads of the map.
+    pub(super) map_reads: L,
+}
+
+impl<'a, L: Lanes> Walk<'a, L> {
+    /// From sample `first` up to `end`, which is left out.
+    #[inline(always)]
+    pub(super) fn new(token: L::Token, first: L, end: L, blocks: Option<Blocks<'a, L>>) -> Self {
+        let is_active = first.lt(end);
+        Self {
+            index: first,
+            is_active,
+            has_leapt: is_active & !is_active,
+            leave: first,
+            end,
+            blocks,
+            map_reads: L::splat(token, 0.0),
+        }
+    }
+
+    /// Over all samples of rays.
+    #[inline(always)]
+    pub(super) fn along(context: &Context<'a>, token: L::Token, ray: &Ray<L>) -> Self {
+        let blocks = match context.skip {
+            Some(skip) => Some(ray.blocks(token, skip)),
+            None => None,
+        };
+        Self::new(token, L::splat(token, 0.0), ray.sample_count, blocks)
+    }
+
+    /// Moves rays that have left their block, of those that may leap, to the next sample in an occupied one.
+    #[inline(always)]
+    pub(super) fn leap(&mut self, token: L::Token, may_leap: L::Mask) {
+        let Some(blocks) = &self.blocks else { return };
+        let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
+        let mut looks = self.is_active & may_leap & self.leave.le(self.index);
+        self.has_leapt = looks & !looks;
+        while looks.any() {
+            let look = blocks.look(token, self.index);
+            self.map_reads += L::select(looks, one, zero);
+            let next = self.index + look.steps;
+            let is_empty = looks & look.is_empty;
+            self.leave = L::select(looks, next, self.leave);
+            self.index = L::select(is_empty, next, self.index);
+            self.is_active = self.is_active & self.index.lt(self.end);
+            looks = is_empty & self.is_active;
+            self.has_leapt = self.has_leapt | looks;
+        }
+    }
+
+    /// Goes on to the next sample.
+    #[inline(always)]
+    pub(super) fn advance(&mut self) {
+        self.index = L::select(self.is_active, self.index + 1.0, self.index);
+        self.is_active = self.is_active & self.index.lt(self.end);
+    }
+
+    /// The rays that left their block before the sample before.
+    #[inline(always)]
+    pub(super) fn left_before(&self) -> L::Mask {
+        self.leave.lt(self.index)
+    }
+}
