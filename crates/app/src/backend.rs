@@ -8,7 +8,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::{Cast, Caster};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
-use wheatstone_render::{Gpu, GpuError, GpuVolume, Prepared, Renderer, Target, TexelFormat};
+use wheatstone_render::{Gpu, GpuError, GpuVolume, Prepared, Renderer, Sources, Target, TexelFormat};
 
 /// Which caster the user asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -108,13 +108,13 @@ impl Engine {
         parameters: CastParameters,
     ) -> Result<Self, GpuError> {
         let mut renderer = Renderer::new(&gpu)?;
-        let format = TexelFormat::choose(storage, gpu.capabilities(), gpu.description().is_software);
+        let format = TexelFormat::for_volume(volume, storage, &gpu);
         let bar = Bar::new("upload", 1);
         let start = Instant::now();
         let volume =
             GpuVolume::upload_as(&gpu, volume, format, &mut |done, all| bar.set(done as u64, all as u64))?;
         let upload = start.elapsed();
-        let prepared = renderer.prepare(&gpu, &volume, parameters)?;
+        let prepared = renderer.prepare(&gpu, &Sources::volume(&volume), parameters)?;
         Ok(Self::Gpu(Box::new(GpuEngine { gpu, renderer, volume, prepared, targets: Vec::new(), upload })))
     }
 
@@ -129,7 +129,8 @@ impl Engine {
     pub(crate) fn set(&mut self, parameters: CastParameters) -> Result<(), GpuError> {
         match self {
             Self::Gpu(engine) => {
-                engine.prepared = engine.renderer.prepare(&engine.gpu, &engine.volume, parameters)?;
+                engine.prepared =
+                    engine.renderer.prepare(&engine.gpu, &Sources::volume(&engine.volume), parameters)?;
             }
             Self::Cpu(engine) => engine.parameters = parameters,
         }

@@ -1,10 +1,13 @@
 //! The cast pass: pipelines of the kernel's variants, and the dispatch of one piece of a picture.
 
 use crate::gpu::{Gpu, GpuError};
+use crate::leap::Leap;
 use crate::pacer::BAND_ROWS;
+use crate::renderer::Sources;
 use crate::shader::compose;
 use crate::target::Target;
 use crate::uniforms::{CastUniform, ViewUniform};
+use crate::volume::TexelFormat;
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, DIRECTIONAL_STEPS, SHADOW_SAMPLES};
@@ -12,7 +15,7 @@ use wheatstone_core::scene::{GradientMethod, Mode, Shading};
 use wheatstone_core::transfer::LUT_1D_ENTRIES;
 
 /// Bytes of a `RayState`.
-pub(crate) const RAY_STATE_BYTES: u64 = 32;
+pub(crate) const RAY_STATE_BYTES: u64 = 48;
 
 /// Which files make up a kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -21,11 +24,16 @@ pub(crate) struct Variant {
     classifier: &'static str,
     shading: &'static str,
     gradient: &'static str,
+    volume: &'static str,
+    skip: &'static str,
+    blocks: &'static str,
+    magnitude: &'static str,
+    resume: &'static str,
 }
 
 impl Variant {
     /// The kernel for some parameters.
-    pub(crate) fn of(parameters: &CastParameters) -> Self {
+    pub(crate) fn of(parameters: &CastParameters, sources: &Sources<'_>) -> Self {
         let (accumulator, is_shaded) = match parameters.mode {
             Mode::Composite => (COMPOSITE, true),
             Mode::Mip => ("lib/accumulate_mip", false),
@@ -34,6 +42,7 @@ impl Variant {
             Mode::XRay => ("lib/accumulate_xray", false),
             Mode::Isosurface { .. } => ("lib/accumulate_first_hit", true),
         };
+        let is_quads = sources.volume.format() == TexelFormat::Rgba8UnormQuads;
         Self {
             accumulator,
             classifier: match parameters.classifier {
@@ -51,10 +60,25 @@ impl Variant {
                 Shading::Directional { .. } => "lib/shade_directional",
             },
             gradient: match parameters.gradient {
+                GradientMethod::CentralDifferences if is_quads => "lib/gradient_central_quads",
                 GradientMethod::CentralDifferences => "lib/gradient_central",
                 GradientMethod::Tetrahedron => "lib/gradient_tetrahedron",
             },
+            volume: if is_quads { VOLUME_QUADS } else { VOLUME_FILTERED },
+            skip: if matches!(sources.leap, Leap::Nothing) { SKIP_NONE } else { SKIP_BLOCKS },
+            blocks: match (sources.leap, parameters.mode) {
+                (Leap::IdleBlocks(_), Mode::MinIp) => "lib/blocks_by_minimum",
+                (Leap::IdleBlocks(_), _) => "lib/blocks_by_maximum",
+                (Leap::Nothing | Leap::EmptyBlocks(_), _) => "lib/blocks_by_distance",
+            },
+            magnitude: if sources.gradient_map.is_some() { MAGNITUDE_MAP } else { MAGNITUDE_ESTIMATED },
+            resume: RESUME_WHOLE,
         }
+    }
+
+    /// The kernel that casts rays in several dispatches.
+    pub(crate) fn in_parts(self) -> Self {
+        Self { resume: RESUME_PARTS, ..self }
     }
 
     /// Every kernel that parameters can ask for.
@@ -69,35 +93,109 @@ impl Variant {
             "lib/shade_ambient",
             "lib/shade_directional",
         ];
-        let projections =
-            ["lib/accumulate_mip", "lib/accumulate_minip", "lib/accumulate_mean", "lib/accumulate_xray"];
+        let by_distance = "lib/blocks_by_distance";
+        let skips = [(SKIP_NONE, by_distance), (SKIP_BLOCKS, by_distance)];
+        let projections = [
+            ("lib/accumulate_mip", [(SKIP_NONE, by_distance), (SKIP_BLOCKS, "lib/blocks_by_maximum")]),
+            ("lib/accumulate_minip", [(SKIP_NONE, by_distance), (SKIP_BLOCKS, "lib/blocks_by_minimum")]),
+            ("lib/accumulate_mean", skips),
+            ("lib/accumulate_xray", skips),
+        ];
+        let (volume, magnitude, resume) = (VOLUME_FILTERED, MAGNITUDE_ESTIMATED, RESUME_WHOLE);
         let mut all = Vec::new();
-        for gradient in gradients {
-            for shading in shadings {
-                for classifier in classifiers {
-                    all.push(Self { accumulator: COMPOSITE, classifier, shading, gradient });
+        for (skip, blocks) in skips {
+            for gradient in gradients {
+                for shading in shadings {
+                    for classifier in classifiers {
+                        all.push(Self {
+                            accumulator: COMPOSITE,
+                            classifier,
+                            shading,
+                            gradient,
+                            volume,
+                            skip,
+                            blocks,
+                            magnitude,
+                            resume,
+                        });
+                    }
+                    let (accumulator, classifier) = ("lib/accumulate_first_hit", "lib/classify_isovalue");
+                    all.push(Self {
+                        accumulator,
+                        classifier,
+                        shading,
+                        gradient,
+                        volume,
+                        skip,
+                        blocks,
+                        magnitude,
+                        resume,
+                    });
                 }
-                let classifier = "lib/classify_isovalue";
-                all.push(Self { accumulator: "lib/accumulate_first_hit", classifier, shading, gradient });
             }
         }
-        for accumulator in projections {
-            let classifier = "lib/classify_value";
-            all.push(Self { accumulator, classifier, shading: "lib/shade_none", gradient: gradients[0] });
+        for (accumulator, skips) in projections {
+            for (skip, blocks) in skips {
+                let (classifier, shading) = ("lib/classify_value", "lib/shade_none");
+                all.push(Self {
+                    accumulator,
+                    classifier,
+                    shading,
+                    gradient: gradients[0],
+                    volume,
+                    skip,
+                    blocks,
+                    magnitude,
+                    resume,
+                });
+            }
         }
+        let with_map = |variant: &&Self| variant.classifier == "lib/classify_value_gradient";
+        let with_map: Vec<Self> = all
+            .iter()
+            .filter(with_map)
+            .map(|variant| Self { magnitude: MAGNITUDE_MAP, ..*variant })
+            .collect();
+        all.extend(with_map);
+        let on_quads = |variant: &Self| Self {
+            volume: VOLUME_QUADS,
+            gradient: if variant.gradient == gradients[0] {
+                "lib/gradient_central_quads"
+            } else {
+                variant.gradient
+            },
+            ..*variant
+        };
+        let on_quads: Vec<Self> = all.iter().map(on_quads).collect();
+        all.extend(on_quads);
+        let in_parts: Vec<Self> = all.iter().map(|variant| variant.in_parts()).collect();
+        all.extend(in_parts);
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 4] {
+    fn choices(&self) -> [(&'static str, &'static str); 9] {
         [
             ("lib/accumulate", self.accumulator),
             ("lib/classify", self.classifier),
             ("lib/shade", self.shading),
             ("lib/gradient", self.gradient),
+            ("lib/volume", self.volume),
+            ("lib/skip", self.skip),
+            ("lib/blocks", self.blocks),
+            ("lib/magnitude", self.magnitude),
+            ("lib/resume", self.resume),
         ]
     }
 }
 
+const VOLUME_FILTERED: &str = "lib/volume_filtered";
+const VOLUME_QUADS: &str = "lib/volume_quads";
+const MAGNITUDE_MAP: &str = "lib/magnitude_map";
+const MAGNITUDE_ESTIMATED: &str = "lib/magnitude_estimated";
+const RESUME_WHOLE: &str = "lib/resume_whole";
+const RESUME_PARTS: &str = "lib/resume_parts";
+const SKIP_NONE: &str = "lib/skip_none";
+const SKIP_BLOCKS: &str = "lib/skip_blocks";
 const COMPOSITE: &str = "lib/accumulate_composite";
 
 /// Loop iterations beside shading that a composited sample costs at most: its own, the one that ends
@@ -106,7 +204,7 @@ const SEARCH_ITERATIONS: u32 = 10;
 
 /// Loop iterations that a sample costs at most. A loop of n counts n + 1: drivers count the one that ends it.
 pub(crate) fn iterations_per_sample(parameters: &CastParameters) -> u32 {
-    if Variant::of(parameters).accumulator != COMPOSITE {
+    if parameters.mode != Mode::Composite {
         return 1;
     }
     SEARCH_ITERATIONS
@@ -154,14 +252,12 @@ impl CastPass {
             device,
             "volume",
             &[
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D3,
-                    multisampled: false,
-                },
+                texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
                 wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                 storage_buffer(true, 16),
                 buffer(wgpu::BufferBindingType::Uniform, 16 * LUT_1D_ENTRIES as u64),
+                texture_3d(wgpu::TextureSampleType::Uint),
+                texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
             ],
         );
         let target_layout = bind_group_layout(
@@ -169,7 +265,7 @@ impl CastPass {
             "target",
             &[
                 storage_texture(wgpu::TextureFormat::Rgba32Float),
-                storage_texture(wgpu::TextureFormat::Rg32Float),
+                storage_texture(wgpu::TextureFormat::Rgba32Float),
                 storage_buffer(false, RAY_STATE_BYTES),
             ],
         );
@@ -278,6 +374,14 @@ fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {
     wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: NonZeroU64::new(smallest) }
 }
 
+fn texture_3d(sample_type: wgpu::TextureSampleType) -> wgpu::BindingType {
+    wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D3,
+        multisampled: false,
+    }
+}
+
 fn storage_texture(format: wgpu::TextureFormat) -> wgpu::BindingType {
     wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::WriteOnly,
@@ -316,7 +420,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 44);
+        assert_eq!(variants.len(), 432);
     }
 
     #[test]

@@ -79,7 +79,9 @@ impl GpuGradientMap {
         let depth = match format {
             TexelFormat::R8Unorm | TexelFormat::R16FloatOf8Bit => GradientDepth::Bits8,
             TexelFormat::R16Unorm | TexelFormat::R16FloatOf16Bit => GradientDepth::Bits16,
-            TexelFormat::R32Float => panic!("magnitudes are held in 8 or 16 bits"),
+            TexelFormat::R32Float | TexelFormat::Rgba8UnormQuads => {
+                panic!("magnitudes are held in 8 or 16 bits of their own")
+            }
         };
         check_size(gpu.capabilities(), volume.dims, format)?;
         let pass = GradientPass::new(gpu, volume, method);
@@ -143,7 +145,9 @@ impl GpuGradientMap {
                 let code = |half: f16| (half.to_f32() * code_per_sampled).round() as u16;
                 read_texture::<f16>(gpu, texture)?.into_iter().map(code).collect()
             }
-            TexelFormat::R16Unorm | TexelFormat::R32Float => read_texture(gpu, texture)?,
+            TexelFormat::R16Unorm | TexelFormat::R32Float | TexelFormat::Rgba8UnormQuads => {
+                read_texture(gpu, texture)?
+            }
         })
     }
 }
@@ -303,7 +307,7 @@ fn pack_file(format: TexelFormat) -> &'static str {
         TexelFormat::R8Unorm => "lib/pack_r8unorm",
         TexelFormat::R16FloatOf8Bit => "lib/pack_r16float_of_8bit",
         TexelFormat::R16FloatOf16Bit => "lib/pack_r16float_of_16bit",
-        TexelFormat::R16Unorm | TexelFormat::R32Float => "lib/pack_r16unorm",
+        TexelFormat::R16Unorm | TexelFormat::R32Float | TexelFormat::Rgba8UnormQuads => "lib/pack_r16unorm",
     }
 }
 

@@ -8,6 +8,7 @@ pub mod gpu;
 mod gradient_map;
 mod kernel;
 mod layers;
+mod leap;
 mod pacer;
 mod readback;
 mod renderer;
@@ -19,6 +20,7 @@ mod volume;
 
 pub use gpu::{AdapterDescription, Gpu, GpuError};
 pub use gradient_map::GpuGradientMap;
-pub use renderer::{Prepared, Renderer};
+pub use leap::Leap;
+pub use renderer::{Prepared, Renderer, Sources};
 pub use target::Target;
 pub use volume::{GpuVolume, TexelFormat};

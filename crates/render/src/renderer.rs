@@ -2,6 +2,8 @@
 
 use crate::cast_pass::{self, Bindings, CastPass, RAY_STATE_BYTES, Variant};
 use crate::gpu::{Gpu, GpuError};
+use crate::gradient_map::GpuGradientMap;
+use crate::leap::Leap;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
 use crate::target::Target;
 use crate::uniforms::{CastUniform, ViewUniform};
@@ -21,7 +23,28 @@ const MOST_STATE_BYTES: u64 = 64 << 20;
 pub struct Renderer {
     cast_pass: CastPass,
     sampler: wgpu::Sampler,
+    /// Stands where a cast without skipping has no map.
+    no_map: wgpu::TextureView,
     pacer: Pacer,
+}
+
+/// What a cast reads besides its parameters.
+#[derive(Debug, Clone, Copy)]
+pub struct Sources<'a> {
+    /// The voxels.
+    pub volume: &'a GpuVolume,
+    /// Where two-dimensional transfer functions look gradient magnitudes up; without it they are estimated around each
+    /// sample.
+    pub gradient_map: Option<&'a GpuGradientMap>,
+    /// What rays leap over.
+    pub leap: Leap<'a>,
+}
+
+impl<'a> Sources<'a> {
+    /// A volume alone: every sample is taken, every gradient estimated.
+    pub fn volume(volume: &'a GpuVolume) -> Self {
+        Self { volume, gradient_map: None, leap: Leap::Nothing }
+    }
 }
 
 /// A volume with the settings that it is shown with, ready to be cast from any view. Made once per change of
@@ -29,7 +52,7 @@ pub struct Renderer {
 #[derive(Debug)]
 pub struct Prepared {
     parameters: CastParameters,
-    pipeline: wgpu::ComputePipeline,
+    variant: Variant,
     view_uniform: wgpu::Buffer,
     frame: wgpu::BindGroup,
     volume: wgpu::BindGroup,
@@ -48,8 +71,21 @@ impl Renderer {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
+        let no_map = gpu
+            .device
+            .create_texture(&wgpu::TextureDescriptor {
+                label: Some("no skip map"),
+                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D3,
+                format: wgpu::TextureFormat::R8Uint,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+            .create_view(&wgpu::TextureViewDescriptor::default());
         gpu.check()?;
-        Ok(Self { cast_pass, sampler, pacer: Pacer::new() })
+        Ok(Self { cast_pass, sampler, no_map, pacer: Pacer::new() })
     }
 
     /// Prepares a volume to be cast with some parameters.
@@ -59,15 +95,25 @@ impl Renderer {
     pub fn prepare(
         &mut self,
         gpu: &Gpu,
-        volume: &GpuVolume,
+        sources: &Sources<'_>,
         parameters: CastParameters,
     ) -> Result<Prepared, GpuError> {
-        let pipeline = self.cast_pass.pipeline(gpu, Variant::of(&parameters))?;
-        let map = volume.normalised_from_sampled(parameters.window);
+        let variant = Variant::of(&parameters, sources);
+        self.cast_pass.pipeline(gpu, variant)?;
+        let Sources { volume, gradient_map, leap } = sources;
+        let stored = volume.encoding().normalised_from_stored(parameters.window);
+        let magnitude_scale = gradient_map.map_or(0.0, |map| map.normalised_from_sampled(stored.0));
+        let cast_uniform = CastUniform::new(
+            &parameters,
+            volume.dims,
+            volume.normalised_from_sampled(parameters.window),
+            &leap.uniform(&parameters, stored, shortest_run(gpu)),
+            magnitude_scale as f32,
+        );
         let cast_uniform = init_buffer(
             gpu,
             "cast parameters",
-            bytemuck::bytes_of(&CastUniform::new(&parameters, volume.dims, map)),
+            bytemuck::bytes_of(&cast_uniform),
             wgpu::BufferUsages::UNIFORM,
         );
         let view_uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -88,6 +134,7 @@ impl Renderer {
             &self.cast_pass.frame_layout,
             &[cast_uniform.as_entire_binding(), view_uniform.as_entire_binding()],
         );
+        let leap_texture = leap.texture();
         let volume = bind_group(
             gpu,
             &self.cast_pass.volume_layout,
@@ -96,10 +143,12 @@ impl Renderer {
                 wgpu::BindingResource::Sampler(&self.sampler),
                 lut_2d.as_entire_binding(),
                 lut_1d.as_entire_binding(),
+                wgpu::BindingResource::TextureView(leap_texture.as_ref().unwrap_or(&self.no_map)),
+                wgpu::BindingResource::TextureView(gradient_map.map_or(&volume.texture, |map| &map.view)),
             ],
         );
         gpu.check()?;
-        Ok(Prepared { parameters, pipeline, view_uniform, frame, volume })
+        Ok(Prepared { parameters, variant, view_uniform, frame, volume })
     }
 
     /// Casts each view into its target and waits until all are done.
@@ -183,10 +232,13 @@ impl Renderer {
             piece.sample_limit = sample_limit(most_samples, iterations, share_of_ray);
             piece.band_stride = if gpu.description().is_software { spreading_stride(band_count) } else { 1 };
             piece.first_sample = 0;
+            let is_whole = piece.sample_limit == u32::MAX;
+            let variant = if is_whole { prepared.variant } else { prepared.variant.in_parts() };
+            let pipeline = self.cast_pass.pipeline(gpu, variant)?;
             while piece.first_sample < most_samples {
                 gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
                 let start = Instant::now();
-                cast_pass::dispatch(gpu, &prepared.pipeline, &bindings, target, piece.row_count);
+                cast_pass::dispatch(gpu, &pipeline, &bindings, target, piece.row_count);
                 gpu.wait()?;
                 let share = (f64::from(piece.sample_limit) / f64::from(most_samples)).min(1.0);
                 self.pacer.learn(samples * share, start.elapsed());
@@ -196,6 +248,12 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// Samples that a run between leaps is long at least. Software Vulkan runs eight rays in lockstep and takes the same time
+/// whether one of them or all need a sample; longer runs spare it searches (`docs/benchmarks/`).
+fn shortest_run(gpu: &Gpu) -> f32 {
+    if gpu.description().is_software { 12.0 } else { 1.0 }
 }
 
 fn init_buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

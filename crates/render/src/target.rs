@@ -13,7 +13,7 @@ pub struct Target {
     size: [u32; 2],
     /// RGBA, premultiplied, 32-bit float.
     pub(crate) color: wgpu::Texture,
-    /// Depth of the first hit in metres, and samples taken; 32-bit float.
+    /// Depth of the first hit in metres, samples taken, reads of the skip map; 32-bit float.
     pub(crate) depth: wgpu::Texture,
 }
 
@@ -43,7 +43,7 @@ impl Target {
             })
         };
         let color = texture("color target", wgpu::TextureFormat::Rgba32Float);
-        let depth = texture("depth target", wgpu::TextureFormat::Rg32Float);
+        let depth = texture("depth target", wgpu::TextureFormat::Rgba32Float);
         gpu.check()?;
         Ok(Self { size, color, depth })
     }
@@ -59,14 +59,15 @@ impl Target {
     /// No memory, a lost or hung device.
     pub fn read(&self, gpu: &Gpu) -> Result<Cast, GpuError> {
         let color: Vec<[f32; 4]> = self.read_texture(gpu, &self.color)?;
-        let depth_and_samples: Vec<[f32; 2]> = self.read_texture(gpu, &self.depth)?;
-        let depth_m = depth_and_samples
+        let depth_and_counts: Vec<[f32; 4]> = self.read_texture(gpu, &self.depth)?;
+        let depth_m = depth_and_counts
             .iter()
-            .map(|&[depth_m, _]| if depth_m == NOTHING_HIT { f32::INFINITY } else { depth_m })
+            .map(|&[depth_m, ..]| if depth_m == NOTHING_HIT { f32::INFINITY } else { depth_m })
             .collect();
-        let samples = depth_and_samples.iter().map(|&[_, samples]| samples as u64).sum();
+        let samples = depth_and_counts.iter().map(|&[_, samples, ..]| samples as u64).sum();
+        let map_reads = depth_and_counts.iter().map(|&[_, _, reads, _]| reads as u64).sum();
         let [width, height] = self.size;
-        Ok(Cast { image: Image { width, height, color, depth_m }, samples, map_reads: 0 })
+        Ok(Cast { image: Image { width, height, color, depth_m }, samples, map_reads })
     }
 
     fn read_texture<T: bytemuck::Pod>(&self, gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {

@@ -1,6 +1,7 @@
 //! Mirrors of the WGSL structs. Nothing else defines data shared with shaders; a test compares every field with
 //! naga's layout.
 
+use crate::leap::LeapUniform;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat3, Vec3};
 use wheatstone_core::cast::CastParameters;
@@ -31,6 +32,14 @@ pub(crate) struct CastUniform {
     pub(crate) isovalue: f32,
     pub(crate) visible: [f32; 2],
     pub(crate) lut_size: [u32; 2],
+    pub(crate) blocks_per_texture: [f32; 3],
+    pub(crate) skip_margin: f32,
+    pub(crate) last_block: [f32; 3],
+    pub(crate) octant_slices: i32,
+    pub(crate) code_scale: f32,
+    pub(crate) code_offset: f32,
+    pub(crate) shortest_run: f32,
+    pub(crate) magnitude_scale: f32,
     pub(crate) direction_count: u32,
     pub(crate) padding: [u32; 3],
     pub(crate) directions: [[f32; 4]; MAX_DIRECTIONS as usize],
@@ -60,7 +69,13 @@ pub(crate) struct ViewUniform {
 
 impl CastUniform {
     /// The parameters of a cast over a volume whose texels map to normalised values by `scale` and `offset`.
-    pub(crate) fn new(parameters: &CastParameters, dims: [usize; 3], (scale, offset): (f64, f64)) -> Self {
+    pub(crate) fn new(
+        parameters: &CastParameters,
+        dims: [usize; 3],
+        (scale, offset): (f64, f64),
+        leap: &LeapUniform,
+        magnitude_scale: f32,
+    ) -> Self {
         let mut directions = [[0.0; 4]; MAX_DIRECTIONS as usize];
         for (slot, direction) in directions.iter_mut().zip(&parameters.directions) {
             *slot = direction.extend(0.0).to_array();
@@ -84,6 +99,14 @@ impl CastUniform {
             isovalue: parameters.isovalue,
             visible: [visible_lo, visible_hi],
             lut_size: [parameters.lut.width() as u32, parameters.lut.height() as u32],
+            blocks_per_texture: leap.blocks_per_texture,
+            skip_margin: leap.skip_margin,
+            last_block: leap.last_block,
+            octant_slices: leap.octant_slices,
+            code_scale: leap.code_scale,
+            code_offset: leap.code_offset,
+            shortest_run: leap.shortest_run,
+            magnitude_scale,
             direction_count: parameters.directions.len() as u32,
             padding: [0; 3],
             directions,
@@ -160,6 +183,14 @@ mod tests {
                 isovalue,
                 visible,
                 lut_size,
+                blocks_per_texture,
+                skip_margin,
+                last_block,
+                octant_slices,
+                code_scale,
+                code_offset,
+                shortest_run,
+                magnitude_scale,
                 direction_count,
                 directions,
             ]

@@ -21,6 +21,8 @@ pub enum TexelFormat {
     R16Unorm,
     /// Half float that holds 8-bit numbers as they are.
     R16FloatOf8Bit,
+    /// Four neighbouring 8-bit voxels in a texel, filtered by the kernel (`lib/quads.wgsl`).
+    Rgba8UnormQuads,
     /// Half float that holds 16-bit numbers over 65535.
     R16FloatOf16Bit,
     /// 32-bit float.
@@ -28,8 +30,19 @@ pub enum TexelFormat {
 }
 
 impl TexelFormat {
-    /// The format for a precision on a device. Software devices filter 8-bit texels in 8-bit arithmetic, so they
-    /// get half floats, which hold the same numbers exactly.
+    /// The format for a volume on a device: that of [`TexelFormat::choose`], or quads for 8-bit volumes on software
+    /// devices, which read them fastest, if the device has room for such a texture.
+    pub fn for_volume(volume: &Volume, kind: StorageKind, gpu: &Gpu) -> Self {
+        let has_room = || check_size(gpu.capabilities(), volume.grid().dims(), Self::Rgba8UnormQuads).is_ok();
+        if kind == StorageKind::U8 && gpu.description().is_software && has_room() {
+            Self::Rgba8UnormQuads
+        } else {
+            Self::choose(kind, gpu.capabilities(), gpu.description().is_software)
+        }
+    }
+
+    /// The format with one filterable texel per voxel for a precision on a device. Software devices filter 8-bit texels
+    /// in 8-bit arithmetic, so they get half floats, which hold the same numbers exactly.
     pub fn choose(kind: StorageKind, capabilities: &Capabilities, is_software: bool) -> Self {
         match kind {
             StorageKind::U8 if is_software => Self::R16FloatOf8Bit,
@@ -45,7 +58,7 @@ impl TexelFormat {
         match self {
             Self::R8Unorm => 1,
             Self::R16Unorm | Self::R16FloatOf8Bit | Self::R16FloatOf16Bit => 2,
-            Self::R32Float => 4,
+            Self::R32Float | Self::Rgba8UnormQuads => 4,
         }
     }
 
@@ -54,13 +67,14 @@ impl TexelFormat {
             Self::R8Unorm => wgpu::TextureFormat::R8Unorm,
             Self::R16Unorm => wgpu::TextureFormat::R16Unorm,
             Self::R16FloatOf8Bit | Self::R16FloatOf16Bit => wgpu::TextureFormat::R16Float,
+            Self::Rgba8UnormQuads => wgpu::TextureFormat::Rgba8Unorm,
             Self::R32Float => wgpu::TextureFormat::R32Float,
         }
     }
 
     fn storage_kind(self) -> StorageKind {
         match self {
-            Self::R8Unorm | Self::R16FloatOf8Bit => StorageKind::U8,
+            Self::R8Unorm | Self::R16FloatOf8Bit | Self::Rgba8UnormQuads => StorageKind::U8,
             Self::R16Unorm | Self::R16FloatOf16Bit => StorageKind::U16,
             Self::R32Float => StorageKind::F32,
         }
@@ -69,7 +83,7 @@ impl TexelFormat {
     /// Stored number of a sampled one.
     pub(crate) fn stored_per_sampled(self) -> f64 {
         match self {
-            Self::R8Unorm => 255.0,
+            Self::R8Unorm | Self::Rgba8UnormQuads => 255.0,
             Self::R16Unorm | Self::R16FloatOf16Bit => 65535.0,
             Self::R16FloatOf8Bit | Self::R32Float => 1.0,
         }
@@ -84,7 +98,8 @@ impl TexelFormat {
         }
     }
 
-    fn texels(self, stored: &StoredVoxels) -> Vec<u8> {
+    /// Texels of whole slices of `width` × `height` voxels.
+    fn texels(self, stored: &StoredVoxels, [width, height]: [usize; 2]) -> Vec<u8> {
         let halves = |numbers: &mut dyn Iterator<Item = f32>| {
             bytemuck::cast_slice(&numbers.map(f16::from_f32).collect::<Vec<f16>>()).to_vec()
         };
@@ -96,6 +111,9 @@ impl TexelFormat {
             }
             (Self::R16FloatOf16Bit, StoredVoxels::U16(v)) => {
                 halves(&mut v.iter().map(|&x| f32::from(x) / 65535.0))
+            }
+            (Self::Rgba8UnormQuads, StoredVoxels::U8(v)) => {
+                v.chunks(width * height).flat_map(|slice| quads(slice, [width, height])).collect()
             }
             (_, StoredVoxels::U8(v)) => v.clone(),
             (_, StoredVoxels::U16(v)) => bytemuck::cast_slice(v).to_vec(),
@@ -130,7 +148,7 @@ impl GpuVolume {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Self, GpuError> {
         let kind = StorageKind::lossless_for(volume);
-        let format = TexelFormat::choose(kind, gpu.capabilities(), gpu.description().is_software);
+        let format = TexelFormat::for_volume(volume, kind, gpu);
         Self::upload_as(gpu, volume, format, progress)
     }
 
@@ -171,7 +189,7 @@ impl GpuVolume {
                     origin: wgpu::Origin3d { x: 0, y: 0, z: first_slice as u32 },
                     aspect: wgpu::TextureAspect::All,
                 },
-                &format.texels(&encoding.encode(volume.voxels(), voxels)),
+                &format.texels(&encoding.encode(volume.voxels(), voxels), [width, height]),
                 wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(row_bytes as u32),
@@ -215,6 +233,19 @@ impl GpuVolume {
         let (scale, offset) = self.encoding.normalised_from_stored(window);
         (scale * self.format.stored_per_sampled(), offset)
     }
+}
+
+/// Each voxel of a slice with its neighbours along x, y and both, repeated at the faces.
+fn quads(slice: &[u8], [width, height]: [usize; 2]) -> Vec<u8> {
+    let mut quads = Vec::with_capacity(4 * slice.len());
+    for y in 0..height {
+        let row = &slice[y * width..][..width];
+        let next = &slice[(y + 1).min(height - 1) * width..][..width];
+        quads.extend(row.windows(2).zip(next.windows(2)).flat_map(|(a, b)| [a[0], a[1], b[0], b[1]]));
+        let (a, b) = (row[width - 1], next[width - 1]);
+        quads.extend([a, a, b, b]);
+    }
+    quads
 }
 
 pub(crate) fn byte_size(dims: [usize; 3], format: TexelFormat) -> u64 {

@@ -269,7 +269,7 @@ fn default_isovalue(transfer: &TransferSpec) -> f32 {
 }
 
 fn upload_ms(gpu: &Gpu, volume: &Volume, storage: StorageKind) -> Result<f64, GpuError> {
-    let format = TexelFormat::choose(storage, gpu.capabilities(), gpu.description().is_software);
+    let format = TexelFormat::for_volume(volume, storage, gpu);
     let times: Vec<f64> = (0..UPLOADS)
         .map(|_| {
             let start = std::time::Instant::now();

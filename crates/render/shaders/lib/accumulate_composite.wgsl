@@ -2,37 +2,45 @@ import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
 import package::lib::ray_state::{RayState};
+import package::lib::shade::{SHADING_IS_DEAR};
+import package::lib::skip::{RUNS_ARE_DENSE, next_run, start_walk};
 import package::lib::volume::{value_at};
 
 // Samples after which neighbouring rays, one of which may wait at a visible sample, are together again.
 const STRETCH: u32 = 16u;
 
-// Front-to-back emission and absorption. The innermost loop only searches for the next visible sample: a driver that
-// runs both sides of every branch (software Vulkan) then blends no other.
+// Whether to search for the next visible sample before blending it: a driver that runs both sides of every branch
+// (software Vulkan) then blends no other. Not worth it where most are visible and blending is cheap.
+const SEARCHES = SHADING_IS_DEAR || !RUNS_ARE_DENSE;
+
+// Front-to-back emission and absorption.
 fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
+    let walk = start_walk(ray.first, ray.step);
     var state = before;
     var i = begin;
     while i < end && state.is_finished == 0u {
-        let stretch_end = min(i + STRETCH, end);
+        let run = next_run(walk, i, end, state.scalar);
+        state.map_reads += run.map_reads;
+        if VALUE_OFFSET != 0.0 && run.begin != i {
+            state.scalar = value_at(ray_at(ray, f32(run.begin) + VALUE_OFFSET - 1.0));
+        }
+        i = run.begin;
+        let stretch_end = min(i + STRETCH, run.end);
         while i < stretch_end {
             var value = 0.0;
             var is_found = false;
             loop {
                 value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
                 is_found = may_be_visible(value, state.scalar);
-                if is_found {
+                if is_found || !SEARCHES || i + 1u >= stretch_end {
                     break;
                 }
                 state.scalar = value;
                 i++;
-                if i >= stretch_end {
-                    break;
-                }
             }
-            if !is_found {
-                break;
+            if is_found {
+                state = blend(ray, i, value, state);
             }
-            state = blend(ray, i, value, state);
             state.scalar = value;
             i++;
             if is_opaque(state) {
@@ -40,7 +48,7 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
                 break;
             }
         }
+        state.samples += i - run.begin;
     }
-    state.samples += i - begin;
     return state;
 }

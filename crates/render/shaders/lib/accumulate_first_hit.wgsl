@@ -1,7 +1,8 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classify::{classify};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
-import package::lib::ray_state::{NOTHING_HIT, Pixel, RayState};
+import package::lib::ray_state::{NOTHING_HIT, Pixel, RayState, new_ray_state, pixel_of};
+import package::lib::skip::{next_run, start_walk};
 import package::lib::shade::{shade};
 import package::lib::volume::{value_at};
 
@@ -25,33 +26,44 @@ fn is_in(value: f32) -> bool {
     return value >= parameters.isovalue;
 }
 
-// `scalar` holds the value before, `transmittance` the index of its sample.
+// `scalar` holds the value before.
 fn start_ray(ray: Ray) -> RayState {
-    return RayState(vec3f(0.0), -0.5, NOTHING_HIT, value_at(ray_at(ray, -0.5)), 0u, 0u);
+    return new_ray_state(value_at(ray_at(ray, -0.5)), NOTHING_HIT);
 }
 
-// First crossing of the isovalue, in either direction.
+// First crossing of the isovalue, in either direction, between a sample and the one before it. The block of either may
+// hold the surface, so a run is looked for from the sample before, and goes one beyond the block.
 fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
+    let walk = start_walk(ray.first, ray.step);
     var state = before;
     var i = begin;
     var value = state.scalar;
-    while i < end {
-        value = value_at(ray_at(ray, f32(i)));
-        if is_in(value) != is_in(state.scalar) {
-            state.is_finished = 1u;
-            break;
+    while i < end && state.is_finished == 0u {
+        let run = next_run(walk, max(i, 1u) - 1u, end, state.scalar);
+        state.map_reads += run.map_reads;
+        let has_leapt = run.begin > i;
+        i = max(i, run.begin);
+        if has_leapt && i < ray.sample_count {
+            state.scalar = value_at(ray_at(ray, f32(i) - 1.0));
+            state.samples += 1u;
         }
-        state.scalar = value;
-        state.transmittance = f32(i);
-        i++;
+        let run_end = select(end, min(run.end + 1u, end), run.end > run.begin);
+        while i < run_end {
+            value = value_at(ray_at(ray, f32(i)));
+            state.samples += 1u;
+            if is_in(value) != is_in(state.scalar) {
+                state.is_finished = 1u;
+                break;
+            }
+            state.scalar = value;
+            i++;
+        }
     }
-    state.samples += i - begin;
     if state.is_finished == 0u {
         return state;
     }
-    state.samples += 1u;
-    var lo = state.transmittance;
     var hi = f32(i);
+    var lo = max(hi - 1.0, -0.5);
     for (var k = 0u; k < BISECTIONS; k++) {
         let middle = 0.5 * (lo + hi);
         if is_in(value_at(ray_at(ray, middle))) == is_in(value) {
@@ -70,5 +82,5 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
 
 fn finish_ray(ray: Ray, state: RayState) -> Pixel {
     let alpha = f32(state.is_finished);
-    return Pixel(vec4f(state.color * alpha, alpha), state.depth_m, state.samples);
+    return pixel_of(vec4f(state.color * alpha, alpha), state);
 }

@@ -35,6 +35,21 @@ struct CastParameters {
     visible: vec2f,
     // Entries of the table along value and along its second coordinate.
     lut_size: vec2u,
+    // Blocks of the skip map along each axis of the texture; not whole where the last block is cut off.
+    blocks_per_texture: vec3f,
+    // Blocks by which a distance is shortened where a sample reaches beyond its block.
+    skip_margin: f32,
+    // The block furthest from the origin.
+    last_block: vec3f,
+    // Slices of the skip map per octant of directions; 0 if it holds for all.
+    octant_slices: i32,
+    // Normalised value of a block range's code, and of code 0.
+    code_scale: f32,
+    code_offset: f32,
+    // Samples that a run is long at least.
+    shortest_run: f32,
+    // Gradient magnitude of a sampled number of the gradient map.
+    magnitude_scale: f32,
     // Directions of directional shading in use.
     direction_count: u32,
     // Unit directions, metric space; their absolute components are the light's colour.

@@ -5,6 +5,9 @@ import package::lib::volume::{value_at};
 
 // Opaque from the isovalue upwards.
 
+// An empty block has no surface, but may be all inside.
+const EMPTY_IS_CLEAR = false;
+
 const CLASSIFIER_HAS_GRADIENT = true;
 
 // The logarithm that stands for an opacity of 1.

@@ -1,12 +1,15 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classified::{Classified};
-import package::lib::gradient::{gradient_at};
 import package::lib::lut_2d::{lut_at_2d};
+import package::lib::magnitude::{HAS_GRADIENT, steepness_at};
 import package::lib::volume::{value_at};
 
 // Two-dimensional transfer function of value and gradient magnitude.
 
-const CLASSIFIER_HAS_GRADIENT = true;
+// An empty block lets all light through.
+const EMPTY_IS_CLEAR = true;
+
+const CLASSIFIER_HAS_GRADIENT = HAS_GRADIENT;
 
 // Where on the ray, counted in steps from a sample's middle, the value that classifies it is taken.
 const VALUE_OFFSET: f32 = 0.0;
@@ -17,8 +20,8 @@ fn may_be_visible(value: f32, previous: f32) -> bool {
 }
 
 fn classify(position: vec3f, value: f32, previous: f32) -> Classified {
-    let gradient = gradient_at(position);
-    return Classified(lut_at_2d(value, min(length(gradient), 1.0)), gradient);
+    let steepness = steepness_at(position);
+    return Classified(lut_at_2d(value, min(steepness.w, 1.0)), steepness.xyz);
 }
 
 // Log2 transmittance of one voxel length, for shading rays.

@@ -1,16 +1,19 @@
 import package::lib::cast_parameters::{parameters};
-import package::lib::classify::{classify};
+import package::lib::classify::{VALUE_OFFSET, classify};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
-import package::lib::ray_state::{NOTHING_HIT, Pixel, RayState};
+import package::lib::ray_state::{NOTHING_HIT, Pixel, RayState, new_ray_state, pixel_of};
 import package::lib::shade::{shade};
 import package::lib::volume::{value_at};
 
 // Accumulated opacity at which a ray has hit something: the first that an 8-bit picture shows.
 const FIRST_HIT_ALPHA: f32 = 1.0 / 255.0;
 
-// `scalar` holds the value of the sample before.
+// `scalar` holds the value of the sample before, where the classifier asks for it.
 fn start_ray(ray: Ray) -> RayState {
-    return RayState(vec3f(0.0), 1.0, NOTHING_HIT, value_at(ray_at(ray, -0.5)), 0u, 0u);
+    if VALUE_OFFSET == 0.0 {
+        return new_ray_state(0.0, NOTHING_HIT);
+    }
+    return new_ray_state(value_at(ray_at(ray, VALUE_OFFSET - 1.0)), NOTHING_HIT);
 }
 
 // Puts sample i, which may be visible, behind what the ray has gathered.
@@ -33,5 +36,5 @@ fn is_opaque(state: RayState) -> bool {
 }
 
 fn finish_ray(ray: Ray, state: RayState) -> Pixel {
-    return Pixel(vec4f(state.color, 1.0 - state.transmittance), state.depth_m, state.samples);
+    return pixel_of(vec4f(state.color, 1.0 - state.transmittance), state);
 }

@@ -10,6 +10,8 @@ struct RayState {
     scalar: f32,
     // Samples taken.
     samples: u32,
+    // Reads of the skip map.
+    map_reads: u32,
     // 1 when no later sample can change the pixel.
     is_finished: u32,
 }
@@ -24,8 +26,19 @@ struct Pixel {
     depth_m: f32,
     // Samples taken along the ray, those of shading not counted.
     samples: u32,
+    // Reads of the skip map along the ray.
+    map_reads: u32,
+}
+
+// A ray before its first sample.
+fn new_ray_state(scalar: f32, depth_m: f32) -> RayState {
+    return RayState(vec3f(0.0), 1.0, depth_m, scalar, 0u, 0u, 0u);
+}
+
+fn pixel_of(color: vec4f, state: RayState) -> Pixel {
+    return Pixel(color, state.depth_m, state.samples, state.map_reads);
 }
 
 fn opaque_pixel(rgb: vec3f, state: RayState) -> Pixel {
-    return Pixel(vec4f(rgb, 1.0), state.depth_m, state.samples);
+    return pixel_of(vec4f(rgb, 1.0), state);
 }

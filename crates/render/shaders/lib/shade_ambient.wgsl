@@ -3,6 +3,8 @@ import package::lib::classified::{Classified};
 import package::lib::ray::{Ray};
 import package::lib::shading_ray::{log2_transmittance_inside};
 
+const SHADING_IS_DEAR = true;
+
 // Radius of the sphere that is sampled, voxel lengths.
 const AMBIENT_RADIUS: f32 = 4.0;
 

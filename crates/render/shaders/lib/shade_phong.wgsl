@@ -4,6 +4,8 @@ import package::lib::classify::{CLASSIFIER_HAS_GRADIENT};
 import package::lib::gradient::{gradient_at};
 import package::lib::ray::{Ray};
 
+const SHADING_IS_DEAR = true;
+
 const AMBIENT: f32 = 0.2;
 const DIFFUSE: f32 = 0.7;
 const SPECULAR: f32 = 0.2;

@@ -1,15 +1,14 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classified::{Classified};
 import package::lib::ray::{Ray};
-import package::lib::shading_ray::{SHADING_STEP, log2_transmittance_inside};
+import package::lib::shading_ray::{SHADING_STEP, log2_transmittance_along};
+
+const SHADING_IS_DEAR = true;
 
 const SHADOW_SAMPLES: u32 = 24u;
 
 // Transmittance towards the light (SP section 4.1: 24 samples).
 fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
-    var log2_transmittance = 0.0;
-    for (var i = 1u; i <= SHADOW_SAMPLES; i++) {
-        log2_transmittance += log2_transmittance_inside(position + parameters.shadow_step * f32(i));
-    }
+    let log2_transmittance = log2_transmittance_along(position, parameters.shadow_step, SHADOW_SAMPLES);
     return classified.entry.rgb * exp2(log2_transmittance * SHADING_STEP);
 }

@@ -108,9 +108,10 @@ impl GpuBlockRanges {
             mapped_at_creation: false,
         });
         let kernel = match voxels.format {
-            TexelFormat::R8Unorm | TexelFormat::R16FloatOf8Bit | TexelFormat::R16Unorm => {
-                &kernels.ranges_of_whole
-            }
+            TexelFormat::R8Unorm
+            | TexelFormat::R16FloatOf8Bit
+            | TexelFormat::Rgba8UnormQuads
+            | TexelFormat::R16Unorm => &kernels.ranges_of_whole,
             TexelFormat::R16FloatOf16Bit | TexelFormat::R32Float => &kernels.ranges_of_floats,
         };
         let group = kernel.bind(

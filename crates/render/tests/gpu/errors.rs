@@ -7,7 +7,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Mode, Settings, Shading};
 use wheatstone_core::view::Rig;
 use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels};
-use wheatstone_render::{GpuError, GpuVolume, Target, TexelFormat};
+use wheatstone_render::{GpuError, GpuVolume, Sources, Target, TexelFormat};
 
 #[test]
 fn a_volume_beyond_the_largest_side_is_refused() {
@@ -72,8 +72,9 @@ fn views_of_one_call_are_those_of_several() {
         let settings =
             Settings { shading: Shading::Phong, ..Settings::new(volume.full_window(), transfer(0.5)) };
         let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
-        let prepared =
-            renderer.prepare(gpu, &uploaded, CastParameters::new(&settings, &placement(&volume))).unwrap();
+        let prepared = renderer
+            .prepare(gpu, &Sources::volume(&uploaded), CastParameters::new(&settings, &placement(&volume)))
+            .unwrap();
         let mut views = Rig::Stereo { eye_distance_m: 0.1, convergence_m: 1.5 }.views(&outside());
         let size = [17, 30];
         views.push(look(DVec3::new(-1.0, 0.2, 0.3), DVec3::ZERO, orthographic(1.0, size), size));
@@ -99,9 +100,10 @@ fn volumes_and_settings_alternate_on_one_renderer() {
             for mode in [Mode::Composite, Mode::Mip] {
                 let settings = Settings { mode, ..Settings::new(volume.full_window(), transfer(0.5)) };
                 let parameters = CastParameters::new(&settings, &placement(volume));
-                let cpu =
-                    wheatstone_core::reference::Caster::new(volume).cast_exactly(&parameters, None, &[outside()]).remove(0);
-                shown.push((renderer.prepare(gpu, &uploaded, parameters).unwrap(), cpu));
+                let cpu = wheatstone_core::reference::Caster::new(volume)
+                    .cast_exactly(&parameters, None, &[outside()])
+                    .remove(0);
+                shown.push((renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap(), cpu));
             }
         }
         for round in 0..2 {

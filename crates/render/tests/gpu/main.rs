@@ -6,6 +6,7 @@
 
 mod device;
 mod errors;
+mod leap;
 mod parity;
 mod scene;
 mod segments;

@@ -12,7 +12,7 @@ use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Light, Mode, Settings, Shading};
 use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::View;
-use wheatstone_core::volume::{Volume, VoxelType, Window};
+use wheatstone_core::volume::{StorageKind, Volume, VoxelType, Window};
 use wheatstone_render::{Gpu, Renderer, TexelFormat};
 
 struct Case {
@@ -205,9 +205,9 @@ fn lights_steps_thresholds_and_windows() {
 
 #[test]
 fn texel_formats_and_voxel_types() {
-    use TexelFormat::{R8Unorm, R16FloatOf8Bit, R16FloatOf16Bit, R16Unorm, R32Float};
+    use TexelFormat::{R8Unorm, R16FloatOf8Bit, R16FloatOf16Bit, R16Unorm, R32Float, Rgba8UnormQuads};
     let pairs = [
-        (VoxelType::U8, vec![R8Unorm, R16FloatOf8Bit, R16Unorm, R32Float]),
+        (VoxelType::U8, vec![Rgba8UnormQuads, R8Unorm, R16FloatOf8Bit, R16Unorm, R32Float]),
         (VoxelType::U16, vec![R8Unorm, R16FloatOf8Bit, R16Unorm, R16FloatOf16Bit, R32Float]),
         (VoxelType::I16, vec![R16Unorm, R16FloatOf16Bit]),
         (VoxelType::F32, vec![R8Unorm, R16Unorm, R16FloatOf16Bit, R32Float]),
@@ -364,11 +364,7 @@ fn phantoms() {
                 ..plain(&volume)
             };
             for (name, settings) in few_settings(&volume).into_iter().chain([("iso ambient", ambient)]) {
-                let format = TexelFormat::choose(
-                    wheatstone_core::volume::StorageKind::lossless_for(&volume),
-                    gpu.capabilities(),
-                    gpu.description().is_software,
-                );
+                let format = TexelFormat::for_volume(&volume, StorageKind::lossless_for(&volume), gpu);
                 let name = format!("{name} {phantom}");
                 report.run(gpu, renderer, &volume, &Case { name, format, settings, view: outside() });
             }

@@ -9,12 +9,12 @@ use wheatstone_core::view::{
     AnatomicalDirection, Frustum, OrthographicBox, Projection, View, world_from_patient,
 };
 use wheatstone_core::volume::{Grid, StorageKind, Volume, VoxelType, Voxels};
-use wheatstone_render::{Gpu, GpuError, GpuVolume, Renderer, TexelFormat};
+use wheatstone_render::{Gpu, GpuError, GpuVolume, Renderer, Sources, TexelFormat};
 
 /// The precision that a texel format holds.
 pub(crate) fn storage_kind(format: TexelFormat) -> StorageKind {
     match format {
-        TexelFormat::R8Unorm | TexelFormat::R16FloatOf8Bit => StorageKind::U8,
+        TexelFormat::R8Unorm | TexelFormat::R16FloatOf8Bit | TexelFormat::Rgba8UnormQuads => StorageKind::U8,
         TexelFormat::R16Unorm | TexelFormat::R16FloatOf16Bit => StorageKind::U16,
         TexelFormat::R32Float => StorageKind::F32,
     }
@@ -132,7 +132,11 @@ pub(crate) fn cast_on_gpu(
     views: &[View],
 ) -> Result<Vec<Cast>, GpuError> {
     let uploaded = GpuVolume::upload_as(gpu, volume, format, &mut |_, _| {})?;
-    let prepared = renderer.prepare(gpu, &uploaded, CastParameters::new(settings, &placement(volume)))?;
+    let prepared = renderer.prepare(
+        gpu,
+        &Sources::volume(&uploaded),
+        CastParameters::new(settings, &placement(volume)),
+    )?;
     renderer.render_to_host(gpu, &prepared, views)
 }
 

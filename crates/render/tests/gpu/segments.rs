@@ -9,7 +9,7 @@ use wheatstone_core::scene::{Mode, Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels};
-use wheatstone_render::{GpuVolume, Renderer, TexelFormat};
+use wheatstone_render::{GpuVolume, Renderer, Sources, TexelFormat};
 
 /// Loop iterations per invocation that the renderer never exceeds in one dispatch: above it rays are split.
 const ITERATION_LIMIT: f32 = 60_000.0;
@@ -175,7 +175,7 @@ fn rows_in_pieces_are_whole_pictures() {
         let cpu = cast_on_cpu(&volume, TexelFormat::R16Unorm, &parameters, &[view]).remove(0);
         let mut pictures = Vec::new();
         for renderer in [&mut fresh, shared] {
-            let prepared = renderer.prepare(gpu, &uploaded, parameters.clone()).unwrap();
+            let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), parameters.clone()).unwrap();
             for _ in 0..3 {
                 pictures.push(renderer.render_to_host(gpu, &prepared, &[view]).unwrap().remove(0));
             }

@@ -7,7 +7,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Mode, Settings};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::volume::{Grid, Volume, Voxels};
-use wheatstone_render::{GpuVolume, TexelFormat};
+use wheatstone_render::{GpuVolume, Sources, TexelFormat};
 
 /// 300×300 voxels of 16 bits are 180,000 bytes, so that a slab of 16 MiB holds 93 slices and this volume needs two.
 const DIMS: [usize; 3] = [300, 300, 110];
@@ -48,8 +48,9 @@ fn slabs_join_without_a_seam_and_progress_reaches_the_end() {
         let view = look(DVec3::Z, DVec3::ZERO, orthographic(110.0 / 300.0, size), size);
         let window = wheatstone_core::volume::Window::new(0.0, 65_535.0).unwrap();
         let settings = Settings { mode: Mode::Mean, sampling_factor: 0.1, ..Settings::new(window, grey()) };
-        let prepared =
-            renderer.prepare(gpu, &uploaded, CastParameters::new(&settings, &placement(&volume))).unwrap();
+        let prepared = renderer
+            .prepare(gpu, &Sources::volume(&uploaded), CastParameters::new(&settings, &placement(&volume)))
+            .unwrap();
         let image = renderer.render_to_host(gpu, &prepared, &[view]).unwrap().remove(0).image;
         for z in 0..DIMS[2] {
             // The patient's head is up: the last slice is the first row.

@@ -1,5 +1,6 @@
 import package::lib::cast_parameters::{parameters};
 
+// A volume that the device's sampler filters.
 @group(1) @binding(0) var volume: texture_3d<f32>;
 @group(1) @binding(1) var trilinear: sampler;
 

@@ -1,0 +1,18 @@
+import package::lib::accumulate::{start_ray};
+import package::lib::ray::{Ray};
+import package::lib::ray_state::{RayState};
+import package::lib::view::{view};
+
+// Rays of a piece that are cast in several dispatches, row by row.
+@group(2) @binding(2) var<storage, read_write> states: array<RayState>;
+
+fn begin_ray(ray: Ray, slot: u32) -> RayState {
+    if view.first_sample == 0u {
+        return start_ray(ray);
+    }
+    return states[slot];
+}
+
+fn keep_ray(slot: u32, state: RayState) {
+    states[slot] = state;
+}
