@@ -198,22 +198,30 @@ const SKIP_NONE: &str = "lib/skip_none";
 const SKIP_BLOCKS: &str = "lib/skip_blocks";
 const COMPOSITE: &str = "lib/accumulate_composite";
 
-/// Loop iterations beside shading that a composited sample costs at most: its own, the one that ends
-/// the search, and those that it waits for while the seven others of a group of eight rays search in turn.
-const SEARCH_ITERATIONS: u32 = 10;
+/// Loop iterations that a step along a ray costs at most where each of a group of eight rays in lockstep waits while the
+/// others search or leap in turn, and those that end the loops.
+const LOCKSTEP_ITERATIONS: u32 = 11;
 
 /// Loop iterations that a sample costs at most. A loop of n counts n + 1: drivers count the one that ends it.
-pub(crate) fn iterations_per_sample(parameters: &CastParameters) -> u32 {
-    if parameters.mode != Mode::Composite {
-        return 1;
-    }
-    SEARCH_ITERATIONS
-        + match parameters.shading {
-            Shading::None | Shading::Phong => 0,
-            Shading::Shadow => SHADOW_SAMPLES + 1,
-            Shading::Ambient => AMBIENT_SAMPLES + 1,
-            Shading::Directional { .. } => parameters.directions.len() as u32 + 1,
+pub(crate) fn iterations_per_sample(parameters: &CastParameters, leap: &Leap<'_>) -> u32 {
+    let leaps = !matches!(leap, Leap::Nothing);
+    let along_shading_ray = |samples: u32| {
+        if leaps { LOCKSTEP_ITERATIONS * samples + 2 } else { samples + 4 }
+    };
+    let shading = match parameters.shading {
+        Shading::None | Shading::Phong => 0,
+        Shading::Shadow => along_shading_ray(SHADOW_SAMPLES),
+        Shading::Ambient => AMBIENT_SAMPLES + 1,
+        Shading::Directional { .. } => {
+            parameters.directions.len() as u32 * (along_shading_ray(DIRECTIONAL_STEPS) + 1) + 1
         }
+    };
+    match parameters.mode {
+        Mode::Composite if leaps => 2 * LOCKSTEP_ITERATIONS + shading,
+        Mode::Composite => LOCKSTEP_ITERATIONS + shading,
+        _ if leaps => LOCKSTEP_ITERATIONS,
+        _ => 1,
+    }
 }
 
 /// Reads of the volume that a visible sample costs at most.

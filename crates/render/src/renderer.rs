@@ -53,6 +53,7 @@ impl<'a> Sources<'a> {
 pub struct Prepared {
     parameters: CastParameters,
     variant: Variant,
+    iterations_per_sample: u32,
     view_uniform: wgpu::Buffer,
     frame: wgpu::BindGroup,
     volume: wgpu::BindGroup,
@@ -101,6 +102,7 @@ impl Renderer {
         let variant = Variant::of(&parameters, sources);
         self.cast_pass.pipeline(gpu, variant)?;
         let Sources { volume, gradient_map, leap } = sources;
+        let iterations_per_sample = cast_pass::iterations_per_sample(&parameters, leap);
         let stored = volume.encoding().normalised_from_stored(parameters.window);
         let magnitude_scale = gradient_map.map_or(0.0, |map| map.normalised_from_sampled(stored.0));
         let cast_uniform = CastUniform::new(
@@ -148,7 +150,7 @@ impl Renderer {
             ],
         );
         gpu.check()?;
-        Ok(Prepared { parameters, variant, view_uniform, frame, volume })
+        Ok(Prepared { parameters, variant, iterations_per_sample, view_uniform, frame, volume })
     }
 
     /// Casts each view into its target and waits until all are done.
@@ -197,7 +199,7 @@ impl Renderer {
         let state_rows =
             ((MOST_STATE_BYTES / state_row_bytes) as u32).clamp(BAND_ROWS, height.max(BAND_ROWS));
         let most_samples = parameters.most_samples_per_ray();
-        let iterations = cast_pass::iterations_per_sample(parameters);
+        let iterations = prepared.iterations_per_sample;
         let may_be_split = sample_limit(most_samples, iterations, 1.0) != u32::MAX;
         let states = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("ray states"),
