@@ -78,6 +78,14 @@ pub(super) trait Lanes:
         row: usize,
         slice: usize,
     ) -> [[Self; 2]; 4];
+    /// Four voxels along x from a place on: in rows at (y, z) = (0, 0), (1, 0), (0, 1), (1, 1).
+    fn rows_of_four<T: Stored>(
+        token: Self::Token,
+        voxels: &[T],
+        index: Self::Index,
+        row: usize,
+        slice: usize,
+    ) -> [[Self; 4]; 4];
     /// Small numbers at places of a table.
     fn bytes(token: Self::Token, table: &[u8], index: Self::Index) -> Self;
     /// Entries at one place of a table and the logarithms at another.

@@ -100,6 +100,19 @@ impl Lanes for Exact {
         })
     }
 
+    fn rows_of_four<T: Stored>(
+        (): (),
+        voxels: &[T],
+        index: usize,
+        row: usize,
+        slice: usize,
+    ) -> [[Self; 4]; 4] {
+        [0, row, slice, slice + row].map(|start| {
+            let at = index + start;
+            [0, 1, 2, 3].map(|x| Self(voxels[at + x].to_f64()))
+        })
+    }
+
     fn bytes((): (), table: &[u8], index: usize) -> Self {
         Self(f64::from(table[index]))
     }

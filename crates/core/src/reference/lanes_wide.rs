@@ -20,6 +20,8 @@ macro_rules! each_lane {
     };
 }
 
+pub(super) use each_lane;
+
 impl<S: Simd> Mask for mask32x16<S> {
     #[inline(always)]
     fn any(self) -> bool {
@@ -139,28 +141,36 @@ impl<S: Simd> Lanes for f32x16<S> {
         row: usize,
         slice: usize,
     ) -> [[Self; 2]; 4] {
-        // Rows of one length, so that one test of bounds for each lane does for all.
-        let count = voxels.len() - row - slice;
-        let front_low = &voxels[..count];
-        let front_high = &voxels[row..row + count];
-        let back_low = &voxels[slice..slice + count];
-        let back_high = &voxels[row + slice..row + slice + count];
+        let [front_low, front_high, back_low, back_high] = rows_of_one_length(voxels, row, slice);
         let index = index.to_array();
-        let pairs = each_lane!(lane => {
+        let fours = each_lane!(lane => {
             let second = index[lane] as usize + 1;
             let first = second - 1;
             [
-                T::pair(front_low[first], front_low[second]),
-                T::pair(front_high[first], front_high[second]),
-                T::pair(back_low[first], back_low[second]),
-                T::pair(back_high[first], back_high[second]),
+                T::four([front_low[first], front_low[second], front_high[first], front_high[second]]),
+                T::four([back_low[first], back_low[second], back_high[first], back_high[second]]),
             ]
         });
+        let [a, b, c, d] = T::split(token, each_lane!(lane => fours[lane][0]));
+        let [e, f, g, h] = T::split(token, each_lane!(lane => fours[lane][1]));
+        [[a, b], [c, d], [e, f], [g, h]]
+    }
+
+    #[inline(always)]
+    fn rows_of_four<T: Stored>(
+        token: S,
+        voxels: &[T],
+        index: u32x16<S>,
+        row: usize,
+        slice: usize,
+    ) -> [[Self; 4]; 4] {
+        let [a, b, c, d] = rows_of_one_length(voxels, row, slice);
+        let index = index.to_array();
         [
-            T::split(token, each_lane!(lane => pairs[lane][0])),
-            T::split(token, each_lane!(lane => pairs[lane][1])),
-            T::split(token, each_lane!(lane => pairs[lane][2])),
-            T::split(token, each_lane!(lane => pairs[lane][3])),
+            T::split(token, each_lane!(lane => four(a, index[lane]))),
+            T::split(token, each_lane!(lane => four(b, index[lane]))),
+            T::split(token, each_lane!(lane => four(c, index[lane]))),
+            T::split(token, each_lane!(lane => four(d, index[lane]))),
         ]
     }
 
@@ -189,6 +199,26 @@ impl<S: Simd> Lanes for f32x16<S> {
         ];
         (entries, Self::load_array(token, log2))
     }
+}
+
+/// Four rows at (y, z) = (0, 0), (1, 0), (0, 1), (1, 1), so cut that one test of bounds does for all.
+#[inline(always)]
+fn rows_of_one_length<T>(voxels: &[T], row: usize, slice: usize) -> [&[T]; 4] {
+    let count = voxels.len() - row - slice;
+    [
+        &voxels[..count],
+        &voxels[row..row + count],
+        &voxels[slice..slice + count],
+        &voxels[row + slice..row + slice + count],
+    ]
+}
+
+/// Four voxels from a place on.
+#[inline(always)]
+fn four<T: Stored>(voxels: &[T], at: u32) -> T::Four {
+    let last = at as usize + 3;
+    let (d, c, b, a) = (voxels[last], voxels[last - 1], voxels[last - 2], voxels[last - 3]);
+    T::four([a, b, c, d])
 }
 
 /// The numbers of four entries, channel by channel.

@@ -57,9 +57,13 @@ fn phong<L: Lanes>(
     let is_flat = squared.lt(flat_squared);
     let normal = gradient * (one / squared.max(flat_squared).sqrt());
     let to_light = context.parameters.to_light;
-    let to_light = if to_light == Vec3A::ZERO { ray.to_eye } else { Vec3::splat(token, to_light) };
-    let between = to_light + ray.to_eye;
-    let half_way = between * (one / between.length_squared().max(L::splat(token, 1e-12)).sqrt());
+    let (to_light, half_way) = if to_light == Vec3A::ZERO {
+        (ray.to_eye, ray.to_eye)
+    } else {
+        let to_light = Vec3::splat(token, to_light);
+        let between = to_light + ray.to_eye;
+        (to_light, between * (one / between.length_squared().max(L::splat(token, 1e-12)).sqrt()))
+    };
     let facing = L::select(is_flat, one, normal.dot(to_light).abs());
     let glancing = L::select(is_flat, L::splat(token, 0.0), normal.dot(half_way).abs());
     let highlight = glancing.powi(exponent as u32) * specular;
@@ -102,10 +106,10 @@ fn transmittance_along<C: Classify, L: Lanes>(
     count: u32,
 ) -> L {
     let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-    let blocks = match context.shading_skip() {
-        Some(skip) => Some(skip.along(token, position, step)),
-        None => None,
-    };
+    let blocks = context.shading_skip().map(
+        #[inline(always)]
+        |skip| skip.along(token, position, step),
+    );
     let mut log2 = zero;
     let mut walk = Walk::new(token, one, L::splat(token, (count + 1) as f32), blocks);
     while walk.is_active.any() {

@@ -174,10 +174,10 @@ impl<'a, L: Lanes> Walk<'a, L> {
     /// Over all samples of rays.
     #[inline(always)]
     pub(super) fn along(context: &Context<'a>, token: L::Token, ray: &Ray<L>) -> Self {
-        let blocks = match context.skip {
-            Some(skip) => Some(ray.blocks(token, skip)),
-            None => None,
-        };
+        let blocks = context.skip.map(
+            #[inline(always)]
+            |skip| ray.blocks(token, skip),
+        );
         Self::new(token, L::splat(token, 0.0), ray.sample_count, blocks)
     }
 

@@ -1,28 +1,29 @@
 //! Trilinear sampling of the stored voxels.
 
 use super::lanes::Lanes;
+use super::lanes_wide::each_lane;
 use super::vector::Vec3;
 use crate::volume::StoredVoxels;
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x16, u16x16, u32x16};
+use fearless_simd::{f32x16, u32x16};
 use glam::Vec3A;
 use rayon::prelude::*;
 
 /// A stored voxel as the sampler reads it.
 pub(super) trait Stored: Copy + Send + Sync {
-    /// Two neighbours.
-    type Pair: Copy + Default;
+    /// Four voxels in as few machine words as they fit.
+    type Four: Copy;
 
     fn to_f64(self) -> f64;
 
-    fn pair(first: Self, second: Self) -> Self::Pair;
+    fn four(voxels: [Self; 4]) -> Self::Four;
 
-    /// The first and the second voxels of sixteen pairs.
-    fn split<S: Simd>(simd: S, pairs: [Self::Pair; 16]) -> [f32x16<S>; 2];
+    /// The first, second, third and fourth voxels of sixteen fours.
+    fn split<S: Simd>(simd: S, fours: [Self::Four; 16]) -> [f32x16<S>; 4];
 }
 
 impl Stored for u8 {
-    type Pair = u16;
+    type Four = u32;
 
     #[inline(always)]
     fn to_f64(self) -> f64 {
@@ -30,20 +31,24 @@ impl Stored for u8 {
     }
 
     #[inline(always)]
-    fn pair(first: Self, second: Self) -> u16 {
-        u16::from_le_bytes([first, second])
+    fn four(voxels: [Self; 4]) -> u32 {
+        u32::from_le_bytes(voxels)
     }
 
     #[inline(always)]
-    fn split<S: Simd>(simd: S, pairs: [u16; 16]) -> [f32x16<S>; 2] {
-        let (low, high) = u16x16::load_array(simd, pairs).widen();
-        let pairs: u32x16<S> = low.combine(high);
-        [(pairs & 0xff).to_float(), (pairs >> 8).to_float()]
+    fn split<S: Simd>(simd: S, fours: [u32; 16]) -> [f32x16<S>; 4] {
+        let fours = u32x16::load_array(simd, fours);
+        [
+            (fours & 0xff).to_float(),
+            ((fours >> 8) & 0xff).to_float(),
+            ((fours >> 16) & 0xff).to_float(),
+            (fours >> 24).to_float(),
+        ]
     }
 }
 
 impl Stored for u16 {
-    type Pair = u32;
+    type Four = [u32; 2];
 
     #[inline(always)]
     fn to_f64(self) -> f64 {
@@ -51,19 +56,25 @@ impl Stored for u16 {
     }
 
     #[inline(always)]
-    fn pair(first: Self, second: Self) -> u32 {
-        u32::from(first) | u32::from(second) << 16
+    fn four([a, b, c, d]: [Self; 4]) -> [u32; 2] {
+        [u32::from(a) | u32::from(b) << 16, u32::from(c) | u32::from(d) << 16]
     }
 
     #[inline(always)]
-    fn split<S: Simd>(simd: S, pairs: [u32; 16]) -> [f32x16<S>; 2] {
-        let pairs = u32x16::load_array(simd, pairs);
-        [(pairs & 0xffff).to_float(), (pairs >> 16).to_float()]
+    fn split<S: Simd>(simd: S, fours: [[u32; 2]; 16]) -> [f32x16<S>; 4] {
+        let first = u32x16::load_array(simd, each_lane!(lane => fours[lane][0]));
+        let second = u32x16::load_array(simd, each_lane!(lane => fours[lane][1]));
+        [
+            (first & 0xffff).to_float(),
+            (first >> 16).to_float(),
+            (second & 0xffff).to_float(),
+            (second >> 16).to_float(),
+        ]
     }
 }
 
 impl Stored for f32 {
-    type Pair = [Self; 2];
+    type Four = [Self; 4];
 
     #[inline(always)]
     fn to_f64(self) -> f64 {
@@ -71,18 +82,18 @@ impl Stored for f32 {
     }
 
     #[inline(always)]
-    fn pair(first: Self, second: Self) -> [Self; 2] {
-        [first, second]
+    fn four(voxels: [Self; 4]) -> [Self; 4] {
+        voxels
     }
 
     #[inline(always)]
-    fn split<S: Simd>(simd: S, pairs: [[Self; 2]; 16]) -> [f32x16<S>; 2] {
-        let mut split = [[0.0; 16]; 2];
-        for (lane, [first, second]) in pairs.into_iter().enumerate() {
-            split[0][lane] = first;
-            split[1][lane] = second;
-        }
-        [f32x16::load_array(simd, split[0]), f32x16::load_array(simd, split[1])]
+    fn split<S: Simd>(simd: S, fours: [[Self; 4]; 16]) -> [f32x16<S>; 4] {
+        [
+            f32x16::load_array(simd, each_lane!(lane => fours[lane][0])),
+            f32x16::load_array(simd, each_lane!(lane => fours[lane][1])),
+            f32x16::load_array(simd, each_lane!(lane => fours[lane][2])),
+            f32x16::load_array(simd, each_lane!(lane => fours[lane][3])),
+        ]
     }
 }
 
@@ -136,6 +147,18 @@ impl PaddedVoxels {
             StoredVoxels::U8(v) => L::neighbours(token, &v[start..], index, row, slice),
             StoredVoxels::U16(v) => L::neighbours(token, &v[start..], index, row, slice),
             StoredVoxels::F32(v) => L::neighbours(token, &v[start..], index, row, slice),
+        }
+    }
+
+    /// Rows of four voxels along x around a cell: see [`Lanes::rows_of_four`].
+    #[inline(always)]
+    fn rows_of_four<L: Lanes>(&self, token: L::Token, index: L::Index) -> [[L; 4]; 4] {
+        let Self { row, slice, .. } = *self;
+        let start = row + slice;
+        match &self.voxels {
+            StoredVoxels::U8(v) => L::rows_of_four(token, &v[start..], index, row, slice),
+            StoredVoxels::U16(v) => L::rows_of_four(token, &v[start..], index, row, slice),
+            StoredVoxels::F32(v) => L::rows_of_four(token, &v[start..], index, row, slice),
         }
     }
 }
@@ -225,16 +248,12 @@ impl<'a> Sampler<'a> {
         let PaddedVoxels { row, slice, .. } = *self.voxels;
         let (along_y, along_z) = (row as isize, slice as isize);
         // Of the four rows around the position, four voxels each; of the eight rows around these, two.
-        let before_x = self.voxels.neighbours(token, cell.index, -1, row, slice);
-        let after_x = self.voxels.neighbours(token, cell.index, 1, row, slice);
+        let [a, b, c, d] = self.voxels.rows_of_four(token, cell.index);
         let beside_y = self.voxels.neighbours(token, cell.index, -along_y, 3 * row, slice);
         let beside_z = self.voxels.neighbours(token, cell.index, -along_z, row, 3 * slice);
-        let [a, b, c, d] = [
-            [before_x[0][1], after_x[0][0]],
-            [before_x[1][1], after_x[1][0]],
-            [before_x[2][1], after_x[2][0]],
-            [before_x[3][1], after_x[3][0]],
-        ];
+        let before_x = [[a[0], a[1]], [b[0], b[1]], [c[0], c[1]], [d[0], d[1]]];
+        let after_x = [[a[2], a[3]], [b[2], b[3]], [c[2], c[3]], [d[2], d[3]]];
+        let [a, b, c, d] = [[a[1], a[2]], [b[1], b[2]], [c[1], c[2]], [d[1], d[2]]];
         let before_y = [beside_y[0], a, beside_y[2], c];
         let after_y = [b, beside_y[1], d, beside_y[3]];
         let before_z = [beside_z[0], beside_z[1], a, b];
