@@ -20,7 +20,7 @@ pub(crate) struct LookArgs {
     #[arg(long, value_name = "V", value_parser = spec::within(0.0..=1.0), allow_negative_numbers = true)]
     pub(crate) iso: Option<f64>,
 
-    /// Transfer function: auto, ramp:V0..V1, ramp:V0..V1,G0..G1, a preset, a colour map or a file
+    /// Transfer function: auto, ramp:V0..V1, ramp:V0..V1,G0..G1, a preset, a colour map, a benchmark's ramp or a file
     /// [default: auto for dvr, gray for projections, light grey for iso].
     #[arg(long, value_name = "SPEC", value_parser = transfer_spec::parse)]
     pub(crate) tf: Option<TransferSpec>,

@@ -4,7 +4,9 @@ use crate::failure::Failure;
 use crate::spec;
 use anyhow::Context as _;
 use std::path::{Path, PathBuf};
-use wheatstone_core::transfer::{AUTOMATIC_BINS, Preset, TransferFile, TransferFunction, automatic};
+use wheatstone_core::transfer::{
+    AUTOMATIC_BINS, BenchmarkRamp, Preset, TransferFile, TransferFunction, automatic,
+};
 use wheatstone_core::volume::{Statistics, Volume, Window};
 use wheatstone_io::transfer::read_transfer;
 
@@ -19,6 +21,8 @@ pub(crate) enum TransferSpec {
     Ramp2d([f32; 4]),
     /// A preset or colour map.
     Preset(Preset),
+    /// The ramp of a benchmark volume.
+    Benchmark(&'static BenchmarkRamp),
     /// A file.
     File(PathBuf),
 }
@@ -32,7 +36,7 @@ pub(crate) struct Resolved {
     pub(crate) window: Window,
 }
 
-/// Parses `auto`, `ramp:V0..V1`, `ramp:V0..V1,G0..G1`, a preset's or colour map's name, or a path.
+/// Parses `auto`, `ramp:V0..V1`, `ramp:V0..V1,G0..G1`, the name of a preset, a colour map or a benchmark's ramp, or a path.
 pub(crate) fn parse(text: &str) -> Result<TransferSpec, String> {
     if text == "auto" {
         return Ok(TransferSpec::Automatic);
@@ -43,10 +47,16 @@ pub(crate) fn parse(text: &str) -> Result<TransferSpec, String> {
                 .to_owned()
         });
     }
+    if let Some(ramp) = BenchmarkRamp::named(text) {
+        return Ok(TransferSpec::Benchmark(ramp));
+    }
     match text.parse::<Preset>() {
         Ok(preset) => Ok(TransferSpec::Preset(preset)),
         Err(_) if looks_like_a_path(text) => Ok(TransferSpec::File(PathBuf::from(text))),
-        Err(error) => Err(format!("{error}, auto, ramp:V0..V1 and paths of files")),
+        Err(error) => {
+            let ramps = BenchmarkRamp::ALL.iter().map(BenchmarkRamp::name).collect::<Vec<_>>().join(", ");
+            Err(format!("{error}, {ramps}, auto, ramp:V0..V1 and paths of files"))
+        }
     }
 }
 
@@ -75,6 +85,7 @@ impl TransferSpec {
             Self::Ramp([v0, v1]) => format!("ramp:{v0}..{v1}"),
             Self::Ramp2d([v0, v1, g0, g1]) => format!("ramp:{v0}..{v1},{g0}..{g1}"),
             Self::Preset(preset) => preset.name().to_owned(),
+            Self::Benchmark(ramp) => ramp.name().to_owned(),
             Self::File(path) => path.display().to_string(),
         }
     }
@@ -99,6 +110,7 @@ impl TransferSpec {
                 let window = chosen.or_else(recommended).unwrap_or(full);
                 Resolved { transfer: preset.transfer(window).context("--tf")?, window }
             }
+            Self::Benchmark(benchmark) => ramp(benchmark.transfer(volume.grid().dims()).context("--tf")?),
             Self::File(path) => {
                 let file = read_file(path)?;
                 Resolved { transfer: file.transfer, window: chosen.or(file.window).unwrap_or(full) }
@@ -124,8 +136,16 @@ mod tests {
 
     #[test]
     fn specs_come_back() {
-        for text in ["auto", "ramp:0.1..1", "ramp:0.1..1,0..0.25", "ct-bone", "viridis", "a/b.json", "tf.vp"]
-        {
+        for text in [
+            "auto",
+            "ramp:0.1..1",
+            "ramp:0.1..1,0..0.25",
+            "ct-bone",
+            "viridis",
+            "snake-2d",
+            "a/b.json",
+            "tf.vp",
+        ] {
             assert_eq!(parse(text).unwrap().name(), text);
         }
     }

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Placement, Settings, Shading};
+use wheatstone_core::transfer::BenchmarkRamp;
 use wheatstone_core::view::{Frustum, Orbit, Projection, View, world_from_patient};
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::{Gpu, GpuError, GpuVolume, TexelFormat};
@@ -63,7 +64,7 @@ struct CastArgs {
     #[arg(long, value_name = "SHADINGS", value_delimiter = ',', value_parser = spec::shading)]
     shadings: Vec<Shading>,
 
-    /// Transfer function [default: ramp:0.15..1 for files named bonsai, 0.3 for engine, 0.1 for heptane, else ramp:0..1].
+    /// Transfer function [default: the ramp of the benchmark volume that the file is named after, else ramp:0..1].
     #[arg(long, value_name = "SPEC", value_parser = transfer_spec::parse)]
     tf: Option<TransferSpec>,
 
@@ -138,7 +139,7 @@ impl CastArgs {
         let volume = &loaded.volume;
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let name = name.split('.').next().unwrap_or_default().to_owned();
-        let transfer = self.tf.clone().unwrap_or_else(|| TransferSpec::Ramp([default_v0(&name), 1.0]));
+        let transfer = self.tf.clone().unwrap_or_else(|| default_transfer(&name));
         let isovalue = self.iso.map_or_else(|| default_isovalue(&transfer), |iso| iso as f32);
         let resolved = transfer.resolve(volume, Some(volume.full_window()))?;
         let base = Settings {
@@ -251,21 +252,18 @@ fn row(engine: &Engine, timings: &[(f64, f64)]) -> Row {
     }
 }
 
-/// The peers' ramps for the volumes that they are measured with.
-fn default_v0(name: &str) -> f32 {
-    match name {
-        "bonsai" => 0.15,
-        "engine" => 0.3,
-        "heptane" => 0.1,
-        _ => 0.0,
-    }
+/// The ramp that a volume of a name is measured with.
+fn default_transfer(name: &str) -> TransferSpec {
+    BenchmarkRamp::of_volume(name).next().map_or(TransferSpec::Ramp([0.0, 1.0]), TransferSpec::Benchmark)
 }
 
 fn default_isovalue(transfer: &TransferSpec) -> f32 {
-    match transfer {
-        TransferSpec::Ramp([v0, _]) | TransferSpec::Ramp2d([v0, ..]) if *v0 > 0.0 => *v0,
-        _ => 0.3,
-    }
+    let v0 = match transfer {
+        TransferSpec::Ramp([v0, _]) | TransferSpec::Ramp2d([v0, ..]) => *v0,
+        TransferSpec::Benchmark(ramp) => ramp.values()[0],
+        _ => 0.0,
+    };
+    if v0 > 0.0 { v0 } else { 0.3 }
 }
 
 fn upload_ms(gpu: &Gpu, volume: &Volume, storage: StorageKind) -> Result<f64, GpuError> {

@@ -15,14 +15,14 @@ const RISE: f64 = 0.19 / TAU;
 const END: f64 = 3.1 * TAU;
 
 const BODY_RADIUS: f64 = 0.056;
-/// Flesh and skin stay below the value 0.4, and their gradient below 0.06 per voxel at 256³.
+/// Flesh and skin stay at or below the value 0.3, and their gradient below 0.06 per voxel at 256³.
 const FLESH: f64 = 0.15;
 const SKIN: f64 = 0.30;
 const SKIN_WIDTH: f64 = 0.024;
 const BONE: f64 = 0.85;
-const BONE_EDGE: f64 = 0.004;
+const BONE_EDGE: f64 = 0.009;
 const VERTEBRA_SPACING: f64 = 0.042;
-const VERTEBRA_RADIUS: f64 = 0.0240;
+const VERTEBRA_RADIUS: f64 = 0.0265;
 const RIB_RADIUS: f64 = 0.0030;
 
 pub(super) fn value(point: DVec3) -> f64 {

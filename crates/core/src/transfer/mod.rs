@@ -4,6 +4,7 @@
 //! contributes `1 − (1 − α)^Δ`. Colours are display-referred (as VTK and ParaView composite them).
 
 mod automatic;
+mod benchmark;
 pub mod color_space;
 mod colormap;
 mod file;
@@ -12,6 +13,7 @@ mod lut;
 mod preset;
 
 pub use automatic::{AUTOMATIC_BINS, automatic};
+pub use benchmark::BenchmarkRamp;
 pub use colormap::{Colormap, UnknownColormap};
 pub use file::{TransferFile, transfer_at_values};
 pub use json::{JSON_VERSION, TransferJsonError};
