@@ -29,6 +29,10 @@ pub const AMBIENT_RADIUS: f32 = 4.0;
 /// Accumulated opacity at which a composited ray has hit something: the first that an 8-bit picture shows.
 pub const FIRST_HIT_ALPHA: f32 = 1.0 / 255.0;
 
+/// Accumulated opacity at which a composited ray ends even without early termination: what lies behind changes a channel
+/// by less than 2⁻²⁴.
+pub const SATURATED_ALPHA: f32 = 1.0 - 1.0 / 16_777_216.0;
+
 /// Halvings of the step in which an isosurface is found: to a thousandth of a voxel length.
 pub const BISECTIONS: u32 = 10;
 
@@ -70,7 +74,7 @@ pub struct CastParameters {
     pub lut: Lut,
     /// Samples per voxel length.
     pub sampling_factor: f32,
-    /// Accumulated opacity at which a ray ends; above 1 if it never does.
+    /// Accumulated opacity at which a composited ray ends, at most [`SATURATED_ALPHA`].
     pub termination_alpha: f32,
     /// Normalised value of the isosurface.
     pub isovalue: f32,
@@ -128,7 +132,7 @@ impl CastParameters {
             classifier,
             lut,
             sampling_factor: settings.sampling_factor,
-            termination_alpha: settings.early_termination.unwrap_or(2.0),
+            termination_alpha: settings.early_termination.unwrap_or(1.0).min(SATURATED_ALPHA),
             isovalue,
             surface_rgb: settings.surface_rgb.unwrap_or(SURFACE_RGB).into(),
             box_lo: settings.clip.box_lo.clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),

@@ -12,7 +12,7 @@ use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
-use wheatstone_core::transfer::LUT_1D_ENTRIES;
+use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
 use wheatstone_core::view::View;
 
 /// Most bytes of ray states between dispatches.
@@ -126,10 +126,12 @@ impl Renderer {
         });
         // One of the two table bindings holds the table, the other an empty one.
         let entries = parameters.lut.entries();
-        let empty = vec![[0.0; 4]; LUT_1D_ENTRIES];
-        let (lut_1d, lut_2d) =
-            if parameters.lut.height() == 1 { (entries, &empty[..1]) } else { (&empty[..], entries) };
-        let lut_1d = init_buffer(gpu, "lut", bytemuck::cast_slice(lut_1d), wgpu::BufferUsages::UNIFORM);
+        let (lut_1d, lut_2d) = if parameters.lut.height() == 1 {
+            (packed(entries), &[[0.0; 4]][..])
+        } else {
+            (vec![[0; 4]; LUT_1D_ENTRIES], entries)
+        };
+        let lut_1d = init_buffer(gpu, "lut", bytemuck::cast_slice(&lut_1d), wgpu::BufferUsages::UNIFORM);
         let lut_2d = init_buffer(gpu, "2D lut", bytemuck::cast_slice(lut_2d), wgpu::BufferUsages::STORAGE);
         let frame = bind_group(
             gpu,
@@ -250,6 +252,20 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// A one-dimensional table as `lib/lut_1d.wgsl` reads it.
+fn packed(entries: &[LutEntry]) -> Vec<[u32; 4]> {
+    let color = |[r, g, b]: [f32; 3]| {
+        let bits = |channel: f32, largest: f32| (channel.clamp(0.0, 1.0) * largest + 0.5) as u32;
+        bits(r, 2047.0) | bits(g, 2047.0) << 11 | bits(b, 1023.0) << 22
+    };
+    let packed = |(&entry, &next): (&LutEntry, &LutEntry)| {
+        let mean = [0, 1, 2].map(|c| 0.5 * (entry[c] + next[c]));
+        [color(mean), entry[3].to_bits(), (next[3] - entry[3]).to_bits(), 0]
+    };
+    let last = &entries[entries.len() - 1..];
+    entries.iter().zip(entries[1..].iter().chain(last)).map(packed).collect()
 }
 
 /// Samples that a run between leaps is long at least. Software Vulkan runs eight rays in lockstep and takes the same time

@@ -18,6 +18,9 @@ pub(crate) const STEP_DSSIM: f64 = 0.01;
 /// Channel difference that early termination may make: what is left behind the threshold of 0.99, and rounding.
 pub(crate) const EARLY_TERMINATION: f64 = 0.011;
 
+/// Channel difference that ending saturated rays may make: 2⁻²⁴ of the light, twice for rounding.
+pub(crate) const SATURATION: f64 = 1.2e-7;
+
 /// Colour of a lit sample by the Phong formula: rounding of the gradient, raised to the power of 20.
 pub(crate) const LIT_COLOR: f64 = 1e-3;
 

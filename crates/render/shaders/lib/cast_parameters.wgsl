@@ -21,7 +21,7 @@ struct CastParameters {
     texture_from_metric: mat3x3f,
     // Unit vector towards the light of Phong shading, metric space; zero for a headlight.
     to_light: vec3f,
-    // Accumulated opacity at which a ray ends; above 1 if it never does.
+    // Accumulated opacity at which a composited ray ends.
     termination_alpha: f32,
     // Step of a shadow ray, texture space.
     shadow_step: vec3f,
