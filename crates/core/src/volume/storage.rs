@@ -47,6 +47,9 @@ const MOST_OFFSET: f64 = 1e3;
 /// ordinary data is not wider.
 const LARGEST_F32_RANGE: f64 = f32::MAX as f64;
 
+/// Times the offset, how far f32 rounding of `stored · scale + offset` may carry it from 0.
+const ROUNDING_OF_NORMALISING: f64 = 2.5 * f32::EPSILON as f64;
+
 /// Voxels as stored.
 #[derive(Debug, Clone)]
 #[allow(missing_docs, reason = "each variant is the array of the storage kind that it names")]
@@ -110,16 +113,18 @@ impl Encoding {
             (StorageKind::U16, Voxels::U16(v)) if self.value_at_zero == 0.0 => {
                 StoredVoxels::U16(v[range].to_vec())
             }
-            (StorageKind::U8, v) => StoredVoxels::U8(v.map_to_vec(range, |x| to_stored(x).round() as u8)),
-            (StorageKind::U16, v) => StoredVoxels::U16(v.map_to_vec(range, |x| to_stored(x).round() as u16)),
+            (StorageKind::U8, v) => StoredVoxels::U8(v.map_to_vec(range, |x| (to_stored(x) + 0.5) as u8)),
+            (StorageKind::U16, v) => StoredVoxels::U16(v.map_to_vec(range, |x| (to_stored(x) + 0.5) as u16)),
             (StorageKind::F32, v) => StoredVoxels::F32(v.map_to_vec(range, |x| to_stored(x) as f32)),
         }
     }
 
-    /// Scale and offset from a stored number to the normalised value: `v = clamp(stored · scale + offset, 0, 1)`.
+    /// Scale and offset from a stored number to the normalised value: `v = clamp(stored · scale + offset, 0, 1)`. The
+    /// window's low end is exactly 0 in f32, so that air under a ramp from 0 is clear and not almost clear.
     pub fn normalised_from_stored(&self, window: Window) -> (f64, f64) {
         let width = window.hi() - window.lo();
-        (self.value_per_stored / width, (self.value_at_zero - window.lo()) / width)
+        let offset = (self.value_at_zero - window.lo()) / width;
+        (self.value_per_stored / width, offset - ROUNDING_OF_NORMALISING * offset.abs())
     }
 }
 
@@ -171,5 +176,19 @@ mod tests {
         let encoding = Encoding::new(&volume, StorageKind::U8);
         let back = decoded(encoding, encoding.encode(volume.voxels(), 0..3));
         assert!((back[0] - 1000.0).abs() < 1e-9 && (back[2] - 60_000.0).abs() < 1e-9, "{back:?}");
+    }
+
+    #[test]
+    fn the_windows_low_end_is_clear_in_f32() {
+        for (lo, hi) in [(0.1, 1.0), (-1000.0, 3071.3), (273.15, 373.0), (1e-7, 3e-6), (-0.37, 0.0)] {
+            let voxels = Voxels::F32(vec![lo as f32, hi as f32]);
+            let volume = Volume::new(Grid::centred([2, 1, 1], [1.0; 3]).unwrap(), voxels).unwrap();
+            let encoding = Encoding::new(&volume, StorageKind::F32);
+            let (scale, offset) = encoding.normalised_from_stored(volume.full_window());
+            let normalised = |value: f64| encoding.stored(value) as f32 * scale as f32 + offset as f32;
+            let (lo, hi) = volume.range();
+            assert!(normalised(lo) <= 0.0, "{lo} is {}", normalised(lo));
+            assert!((normalised(hi) - 1.0).abs() < 1e-5, "{hi} is {}", normalised(hi));
+        }
     }
 }
