@@ -7,10 +7,13 @@ mod backend;
 mod camera;
 mod commands;
 mod failure;
+mod heat_map;
 mod look;
 mod output;
 mod picture;
+mod plot;
 mod progress;
+mod skipping;
 mod spec;
 mod transfer_spec;
 mod volume_args;
@@ -41,7 +44,7 @@ enum Command {
     Phantom(commands::phantom::PhantomArgs),
     Doctor(commands::doctor::DoctorArgs),
     Demo(commands::demo::DemoArgs),
-    Bench(commands::bench_cast::BenchArgs),
+    Bench(commands::bench::BenchArgs),
 }
 
 fn main() -> ExitCode {
@@ -52,7 +55,7 @@ fn main() -> ExitCode {
         Command::Phantom(args) => commands::phantom::run(&args),
         Command::Doctor(args) => commands::doctor::run(&args),
         Command::Demo(args) => commands::demo::run(&args),
-        Command::Bench(args) => commands::bench_cast::run(&args),
+        Command::Bench(args) => commands::bench::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

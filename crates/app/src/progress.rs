@@ -8,7 +8,7 @@ pub(crate) struct Bar(ProgressBar);
 
 impl Bar {
     /// A bar with a word for what is done.
-    pub(crate) fn new(what: &'static str, steps: u64) -> Self {
+    pub(crate) fn new(what: impl Into<std::borrow::Cow<'static, str>>, steps: u64) -> Self {
         let bar = ProgressBar::new(steps);
         if let Ok(style) = ProgressStyle::with_template("{msg:>8} {wide_bar} {pos}/{len} {eta}") {
             bar.set_style(style);

@@ -1,8 +1,10 @@
 //! Flag values: each parser names what is allowed, and nothing else passes.
 
 use glam::DVec3;
+use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 use wheatstone_core::scene::{ClipPlane, MAX_DIRECTIONS, Shading};
+use wheatstone_core::skip::BlockSize;
 use wheatstone_core::volume::VoxelType;
 
 /// Largest side of a picture, pixels.
@@ -69,6 +71,13 @@ pub(crate) fn phantom_dims(text: &str) -> Result<[usize; 3], String> {
         .ok_or_else(|| "must be N or WIDTHxHEIGHTxDEPTH, each from 1 to 2048".to_owned())
 }
 
+/// Voxels along each side of a block.
+pub(crate) fn block_size(text: &str) -> Result<BlockSize, String> {
+    text.parse().ok().and_then(|side| BlockSize::cube(side).ok()).ok_or_else(|| {
+        format!("must be a number of voxels from {} to {}", BlockSize::SMALLEST, BlockSize::LARGEST)
+    })
+}
+
 /// `SX,SY,SZ` in millimetres.
 pub(crate) fn spacing(text: &str) -> Result<[f64; 3], String> {
     numbers(text)
@@ -110,6 +119,26 @@ pub(crate) fn shading(text: &str) -> Result<Shading, String> {
                 )
             }),
     }
+}
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Show {
+    /// The volume.
+    Picture,
+    /// How much each ray has read: white is so many samples and map reads, or the most of any ray.
+    Samples(Option<NonZeroU32>),
+}
+
+/// `picture`, `samples` or `samples:N`.
+pub(crate) fn show(text: &str) -> Result<Show, String> {
+    match text.split_once(':') {
+        None if text == "picture" => Some(Show::Picture),
+        None if text == "samples" => Some(Show::Samples(None)),
+        Some(("samples", white)) => white.parse().ok().map(|white| Show::Samples(Some(white))),
+        _ => None,
+    }
+    .ok_or_else(|| "must be picture, samples or samples:N with a whole number N above 0".to_owned())
 }
 
 /// The text that [`shading`] parses.
@@ -202,6 +231,10 @@ mod tests {
         assert_eq!(phantom_dims("64"), Ok([64; 3]));
         assert_eq!(phantom_dims("4x5x6"), Ok([4, 5, 6]));
         assert!(phantom_dims("4x5").is_err() && phantom_dims("0").is_err());
+        assert_eq!(block_size("3").unwrap().sides(), [3; 3]);
+        for bad in ["1", "17", "-4", "4x4", ""] {
+            assert!(block_size(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::gpu::{Gpu, GpuError};
 use wheatstone_core::image::Image;
-use wheatstone_core::reference::Cast;
+use wheatstone_core::reference::{Cast, Reads};
 
 /// The largest f32: `NOTHING_HIT` of `lib/ray_state.wgsl`.
 const NOTHING_HIT: f32 = f32::MAX;
@@ -64,10 +64,12 @@ impl Target {
             .iter()
             .map(|&[depth_m, ..]| if depth_m == NOTHING_HIT { f32::INFINITY } else { depth_m })
             .collect();
-        let samples = depth_and_counts.iter().map(|&[_, samples, ..]| samples as u64).sum();
-        let map_reads = depth_and_counts.iter().map(|&[_, _, reads, _]| reads as u64).sum();
+        let reads = depth_and_counts
+            .iter()
+            .map(|&[_, samples, map_reads, _]| Reads { samples: samples as u32, map_reads: map_reads as u32 })
+            .collect();
         let [width, height] = self.size;
-        Ok(Cast { image: Image { width, height, color, depth_m }, samples, map_reads })
+        Ok(Cast::new(Image { width, height, color, depth_m }, reads))
     }
 
     fn read_texture<T: bytemuck::Pod>(&self, gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {

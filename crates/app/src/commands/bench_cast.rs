@@ -1,38 +1,26 @@
 //! `bench cast`: frame times of every mode on both casters, interleaved in one run.
 
+use super::bench::{default_transfer, load, name_of, test_view};
 use crate::backend::{Engine, median, milliseconds};
 use crate::camera::Up;
 use crate::failure::Failure;
 use crate::look::ModeName;
 use crate::output::{print, print_json};
 use crate::progress::Bar;
+use crate::skipping::{SkipArgs, SkipName, Skipping};
 use crate::spec;
 use crate::transfer_spec::{self, TransferSpec};
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Placement, Settings, Shading};
-use wheatstone_core::transfer::BenchmarkRamp;
-use wheatstone_core::view::{Frustum, Orbit, Projection, View, world_from_patient};
+use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::{Gpu, GpuError, GpuVolume, TexelFormat};
 
 /// Uploads that the upload time is the median of.
 const UPLOADS: usize = 3;
-
-/// Measure speed.
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  wheatstone bench cast bonsai.nii.gz --up A --json")]
-pub(crate) struct BenchArgs {
-    #[command(subcommand)]
-    what: BenchCommand,
-}
-
-#[derive(Debug, Subcommand)]
-enum BenchCommand {
-    Cast(CastArgs),
-}
 
 /// Frame times of every mode on both casters, interleaved frame by frame; medians.
 ///
@@ -43,7 +31,7 @@ enum BenchCommand {
     wheatstone bench cast bonsai.nii.gz engine.nii.gz --up A\n  \
     wheatstone bench cast head.nii.gz --size 512x512 --frames 4 --modes dvr,iso --shadings none,phong --json\n  \
     wheatstone bench cast head.nii.gz --tf ramp:0.2..0.8 --backends cpu")]
-struct CastArgs {
+pub(crate) struct CastArgs {
     /// Volume files.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
@@ -84,6 +72,9 @@ struct CastArgs {
     #[arg(long, value_name = "BACKENDS", value_enum, value_delimiter = ',', default_value = "gpu,cpu")]
     backends: Vec<BackendName>,
 
+    #[command(flatten)]
+    skip: SkipArgs,
+
     /// Which patient direction points up; A gives a plain array's +y.
     #[arg(long, value_enum, ignore_case = true, default_value_t = Up::S)]
     up: Up,
@@ -120,25 +111,20 @@ struct Measured {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
-    let BenchCommand::Cast(args) = &args.what;
+pub(crate) fn run(args: &CastArgs) -> Result<(), Failure> {
+    let skipping = args.skip.resolve(SkipName::None)?;
     let mut measured = Measured::default();
     for file in &args.files {
-        args.measure(file, &mut measured)?;
+        args.measure(file, &skipping, &mut measured)?;
     }
     if args.json { print_json(&measured.to_json()) } else { print(&measured.to_table()) }
 }
 
 impl CastArgs {
-    fn measure(&self, file: &Path, measured: &mut Measured) -> Result<(), Failure> {
-        let loaded = {
-            let _spinner = Bar::spinner(format!("reading {}", file.display()));
-            wheatstone_io::read_volume(file)?
-        };
-        crate::volume_args::print_warnings(file, &loaded);
+    fn measure(&self, file: &Path, skipping: &Skipping, measured: &mut Measured) -> Result<(), Failure> {
+        let loaded = load(file)?;
         let volume = &loaded.volume;
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        let name = name.split('.').next().unwrap_or_default().to_owned();
+        let name = name_of(file);
         let transfer = self.tf.clone().unwrap_or_else(|| default_transfer(&name));
         let isovalue = self.iso.map_or_else(|| default_isovalue(&transfer), |iso| iso as f32);
         let resolved = transfer.resolve(volume, Some(volume.full_window()))?;
@@ -148,13 +134,13 @@ impl CastArgs {
             ..Settings::new(resolved.window, resolved.transfer)
         };
         let placement = Placement::new(volume, world_from_patient(volume.grid(), self.up.direction()));
-        let mut engines = self.engines(volume, &CastParameters::new(&base, &placement), &name, measured)?;
+        let mut engines = self.engines(volume, &name, measured)?;
         let looks = self.looks();
         let bar = Bar::new("frames", looks.len() as u64 * u64::from(self.frames) * engines.len() as u64);
         for (mode, shading) in looks {
             let settings = Settings { mode: mode.with_isovalue(isovalue), shading, ..base.clone() };
             let parameters = CastParameters::new(&settings, &placement);
-            self.interleave(&mut engines, &parameters, &bar)?.into_iter().for_each(|timed| {
+            self.interleave(&mut engines, &parameters, skipping, &bar)?.into_iter().for_each(|timed| {
                 measured.rows.push(Row {
                     volume: name.clone(),
                     mode: mode.name(),
@@ -167,13 +153,12 @@ impl CastArgs {
     }
 
     /// The casters that are there, with the volume on each.
-    fn engines(
+    fn engines<'v>(
         &self,
-        volume: &Volume,
-        parameters: &CastParameters,
+        volume: &'v Volume,
         name: &str,
         measured: &mut Measured,
-    ) -> Result<Vec<Engine>, Failure> {
+    ) -> Result<Vec<Engine<'v>>, Failure> {
         let storage = StorageKind::lossless_for(volume);
         let mut engines = Vec::new();
         if self.backends.contains(&BackendName::Gpu) {
@@ -181,7 +166,7 @@ impl CastArgs {
                 Ok(gpu) => {
                     let upload_ms = upload_ms(&gpu, volume, storage)?;
                     measured.uploads.push((name.to_owned(), upload_ms));
-                    let engine = Engine::gpu(gpu, volume, storage, parameters.clone())?;
+                    let engine = Engine::gpu(gpu, volume, storage)?;
                     measured.gpu = Some([engine.device_name(), engine.driver_name()]);
                     engines.push(engine);
                 }
@@ -190,7 +175,7 @@ impl CastArgs {
             }
         }
         if self.backends.contains(&BackendName::Cpu) {
-            engines.push(Engine::cpu(volume, storage, parameters.clone()));
+            engines.push(Engine::cpu(volume, storage));
         }
         Ok(engines)
     }
@@ -209,21 +194,24 @@ impl CastArgs {
     /// Every frame of the turn on every caster in turn.
     fn interleave(
         &self,
-        engines: &mut [Engine],
+        engines: &mut [Engine<'_>],
         parameters: &CastParameters,
+        skipping: &Skipping,
         bar: &Bar,
     ) -> Result<Vec<Row>, Failure> {
         let mut timings: Vec<Vec<(f64, f64)>> = vec![Vec::new(); engines.len()];
+        let mut shots = Vec::new();
         for engine in engines.iter_mut() {
-            engine.set(parameters.clone())?;
+            let shot = engine.prepare(parameters, skipping)?;
             for index in 0..2 {
-                engine.cast(&[self.view(index)?])?;
+                engine.cast(shot, &[self.view(index)?])?;
             }
+            shots.push(shot);
         }
         for index in 0..self.frames {
             let view = self.view(index)?;
-            for (engine, timings) in engines.iter_mut().zip(&mut timings) {
-                let frame_ms = milliseconds(engine.cast(&[view])?);
+            for ((engine, &shot), timings) in engines.iter_mut().zip(&shots).zip(&mut timings) {
+                let frame_ms = milliseconds(engine.cast(shot, &[view])?);
                 let samples: u64 = engine.read()?.iter().map(|cast| cast.samples).sum();
                 timings.push((frame_ms, samples as f64));
                 bar.advance();
@@ -233,13 +221,11 @@ impl CastArgs {
     }
 
     fn view(&self, index: u32) -> Result<View, Failure> {
-        let frustum = Frustum::from_fov_y(1.0, self.size).map_err(Failure::input)?;
-        let azimuth_rad = std::f64::consts::TAU * f64::from(index) / f64::from(self.frames);
-        Ok(Orbit { azimuth_rad, ..Orbit::default() }.view(Projection::Perspective(frustum), self.size))
+        test_view(std::f64::consts::TAU * f64::from(index) / f64::from(self.frames), self.size)
     }
 }
 
-fn row(engine: &Engine, timings: &[(f64, f64)]) -> Row {
+fn row(engine: &Engine<'_>, timings: &[(f64, f64)]) -> Row {
     let median_of = |f: fn(&(f64, f64)) -> f64| median(&timings.iter().map(f).collect::<Vec<_>>());
     Row {
         volume: String::new(),
@@ -250,11 +236,6 @@ fn row(engine: &Engine, timings: &[(f64, f64)]) -> Row {
         samples: median_of(|t| t.1),
         msamples_per_s: median_of(|t| t.1 / 1e3 / t.0.max(1e-3)),
     }
-}
-
-/// The ramp that a volume of a name is measured with.
-fn default_transfer(name: &str) -> TransferSpec {
-    BenchmarkRamp::of_volume(name).next().map_or(TransferSpec::Ramp([0.0, 1.0]), TransferSpec::Benchmark)
 }
 
 fn default_isovalue(transfer: &TransferSpec) -> f32 {

@@ -7,6 +7,7 @@ use crate::look::{Look, LookArgs};
 use crate::output::check_folder;
 use crate::picture::{Bits, write_png};
 use crate::progress::Bar;
+use crate::skipping::Skipping;
 use crate::spec;
 use anyhow::Context as _;
 use clap::{Args, Parser};
@@ -139,7 +140,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn caster(engine: &Engine) -> String {
+fn caster(engine: &Engine<'_>) -> String {
     let kind = if engine.backend_name() == "gpu" { "GPU renderer" } else { "CPU renderer" };
     format!("{kind} ({})", engine.device_name())
 }
@@ -154,7 +155,7 @@ fn plan(shot: &'static Shot, size: [u32; 2], volume: &Volume) -> Result<Plan, Fa
     Ok(Plan { shot, args, look, parameters })
 }
 
-fn open(choice: BackendChoice, plans: &[Plan], volume: &Volume) -> Result<Engine, Failure> {
+fn open<'v>(choice: BackendChoice, plans: &[Plan], volume: &'v Volume) -> Result<Engine<'v>, Failure> {
     let mut rays = 0;
     for plan in plans {
         let views = plan.args.camera.views(0.0)?;
@@ -162,15 +163,15 @@ fn open(choice: BackendChoice, plans: &[Plan], volume: &Volume) -> Result<Engine
     }
     let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
     let job = Job { rays, samples_per_ray: longest as f64 };
-    Engine::open(choice, &job, volume, StorageKind::lossless_for(volume), &plans[0].parameters)
+    Engine::open(choice, &job, volume, StorageKind::lossless_for(volume))
 }
 
-fn take_all(engine: &mut Engine, plans: &[Plan], folder: &Path) -> Result<Vec<Taken>, Failure> {
+fn take_all(engine: &mut Engine<'_>, plans: &[Plan], folder: &Path) -> Result<Vec<Taken>, Failure> {
     let bar = Bar::new("pictures", plans.len() as u64);
     let mut taken = Vec::new();
     for (index, plan) in plans.iter().enumerate() {
-        engine.set(plan.parameters.clone())?;
-        let frame_ms = milliseconds(engine.cast(&plan.args.camera.views(0.0)?)?);
+        let shot = engine.prepare(&plan.parameters, &Skipping::AUTO)?;
+        let frame_ms = milliseconds(engine.cast(shot, &plan.args.camera.views(0.0)?)?);
         let casts = engine.read()?;
         let images: Vec<&Image> = casts.iter().map(|cast| &cast.image).collect();
         let picture = plan.args.camera.arrange(&images, plan.args.background);
@@ -190,7 +191,7 @@ const STYLE: &str = "body{background:#16181d;color:#d8dade;font:16px/1.5 system-
     color:#9fb4c8;word-break:break-word}";
 
 /// A page of its own that shows the pictures beside it.
-fn contact_sheet(plans: &[Plan], taken: &[Taken], engine: &Engine) -> String {
+fn contact_sheet(plans: &[Plan], taken: &[Taken], engine: &Engine<'_>) -> String {
     let mut figures = String::new();
     for Taken { plan, frame_ms, samples, size } in taken {
         let Plan { shot, args, look, .. } = &plans[*plan];

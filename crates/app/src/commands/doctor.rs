@@ -2,8 +2,10 @@
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
+use crate::skipping::{StructureBytes, described, structures};
 use clap::Args;
 use serde_json::{Value, json};
+use wheatstone_core::volume::StorageKind;
 use wheatstone_render::gpu::adapters;
 use wheatstone_render::{AdapterDescription, Gpu, GpuError};
 
@@ -15,6 +17,9 @@ pub(crate) struct DoctorArgs {
     #[arg(long)]
     json: bool,
 }
+
+/// The volume whose structures of empty-space skipping are told.
+const EXAMPLE_DIMS: [usize; 3] = [512; 3];
 
 /// What `--backend auto` comes to.
 struct Choice {
@@ -34,6 +39,7 @@ pub(crate) fn run(args: &DoctorArgs) -> Result<(), Failure> {
             "cpu_threads": threads,
             "uses": choice.uses,
             "why": choice.why,
+            "structures": structures(EXAMPLE_DIMS, StorageKind::U8).iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
         }));
     }
     let mut lines: Vec<String> = adapters.iter().map(adapter_text).collect();
@@ -42,6 +48,9 @@ pub(crate) fn run(args: &DoctorArgs) -> Result<(), Failure> {
     }
     lines.push(format!("CPU renderer: {threads} threads"));
     lines.push(format!("--backend auto uses {}: {}", choice.uses, choice.why));
+    let [x, y, z] = EXAMPLE_DIMS;
+    let structures = described(&structures(EXAMPLE_DIMS, StorageKind::U8));
+    lines.push(format!("empty space in {x}×{y}×{z} 8-bit voxels: {structures}"));
     print(&lines.join("\n"))
 }
 

@@ -2,10 +2,11 @@
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
+use crate::skipping::{StructureBytes, described, structures};
 use crate::volume_args::VolumeArgs;
 use clap::Args;
 use serde_json::{Map, Value, json};
-use wheatstone_core::volume::{Statistics, Volume};
+use wheatstone_core::volume::{Statistics, StorageKind, Volume};
 use wheatstone_io::Loaded;
 
 /// Percentiles that are listed.
@@ -57,6 +58,7 @@ fn as_json(args: &InfoArgs, loaded: &Loaded, statistics: &Statistics) -> Value {
         "percentiles": percentiles,
         "robust_window": [robust.lo(), robust.hi()],
         "non_finite_voxels": volume.non_finite_count(),
+        "structures": structures(grid.dims(), StorageKind::lossless_for(volume)).iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
         "warnings": warnings,
     })
 }
@@ -82,6 +84,7 @@ fn as_text(loaded: &Loaded, statistics: &Statistics) -> String {
         format!("mean           {}", short(statistics.mean())),
         format!("percentiles    {}", percentiles.join(", ")),
         format!("robust window  {} .. {}", short(robust.lo()), short(robust.hi())),
+        format!("empty space    {}", described(&structures(grid.dims(), StorageKind::lossless_for(volume)))),
     ]
     .join("\n")
 }

@@ -1,6 +1,8 @@
 //! The commands, one per file: arguments, then `run`.
 
-pub(crate) mod bench_cast;
+pub(crate) mod bench;
+mod bench_cast;
+mod bench_skip;
 pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod doctor;

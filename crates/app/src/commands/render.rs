@@ -1,19 +1,22 @@
 //! `render`: a volume file to a picture.
 
-use crate::backend::{BackendChoice, Engine, Job, median, milliseconds, note_fallback};
+use crate::backend::{BackendChoice, Engine, Job, Leaping, median, milliseconds, note_fallback};
 use crate::camera::{CameraArgs, Stereo};
 use crate::failure::Failure;
+use crate::heat_map::{heat_map, most_reads};
 use crate::look::{Look, LookArgs};
 use crate::output::{check_writable, numbered, print_json};
 use crate::picture::{Bits, write_png};
 use crate::progress::Bar;
-use crate::spec;
+use crate::skipping::{SkipArgs, SkipName, Skipping};
+use crate::spec::{self, Show};
 use crate::volume_args::VolumeArgs;
 use clap::Args;
 use serde_json::json;
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::image::Image;
+use wheatstone_core::image::{Image, RgbImage};
 use wheatstone_core::scene::Placement;
 use wheatstone_core::view::world_from_patient;
 use wheatstone_core::volume::Volume;
@@ -28,7 +31,8 @@ use wheatstone_io::Loaded;
     wheatstone render ct.nrrd -o mip.png --mode mip --window -100..400 --up A\n  \
     wheatstone render bonsai_256x256x256_uint8.raw -o b.png --tf ramp:0.15..1 --ert 0 --json\n  \
     wheatstone render scan.raw --raw-size 64x64x32 --raw-type int16 -o scan.png --iso 0.4\n  \
-    wheatstone render head.nii.gz -o turn.png --turntable 36\n\n\
+    wheatstone render head.nii.gz -o turn.png --turntable 36\n  \
+    wheatstone render head.nii.gz -o reads.png --ert 0 --skip distance --block-size 4 --show samples\n\n\
     --tf, --iso, V and G are normalised: 0 and 1 are the ends of the window. docs/cli.md tells which window counts.")]
 pub(crate) struct RenderArgs {
     /// The PNG file to write.
@@ -55,6 +59,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
     turntable: Option<u32>,
 
+    /// What to write: picture, or samples: how much each ray has read, black for nothing and white for the most, or for N
+    /// (samples:N).
+    #[arg(long, value_name = "WHAT", default_value = "picture", value_parser = spec::show)]
+    show: Show,
+
     /// Print one JSON object on standard output.
     #[arg(long)]
     json: bool,
@@ -66,6 +75,9 @@ pub(crate) struct RenderArgs {
     look: LookArgs,
 
     #[command(flatten)]
+    skip: SkipArgs,
+
+    #[command(flatten)]
     volume: VolumeArgs,
 }
 
@@ -73,6 +85,10 @@ pub(crate) struct RenderArgs {
 struct Made {
     frames_ms: Vec<f64>,
     samples: u64,
+    map_reads: u64,
+    /// Samples and map reads of a white pixel, where those are shown.
+    white: Option<u32>,
+    leaping: Leaping,
     picture_size: [u32; 2],
     outputs: Vec<PathBuf>,
 }
@@ -82,18 +98,19 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     check_writable(&args.output, "png")?;
     args.camera.check()?;
     args.look.check()?;
+    let skipping = args.skip.resolve(SkipName::Auto)?;
     let mut loaded = args.volume.load()?;
     let look = args.look.resolve(&loaded.volume)?;
     loaded.volume.fill_non_finite(look.settings.window.lo());
     let volume = &loaded.volume;
     let placement = Placement::new(volume, world_from_patient(volume.grid(), args.camera.up.direction()));
     let parameters = CastParameters::new(&look.settings, &placement);
-    let mut engine = args.open(args.backend, volume, &parameters)?;
-    let made = match args.make(&mut engine) {
+    let mut engine = args.open(args.backend, volume)?;
+    let made = match args.make(&mut engine, &parameters, &skipping) {
         Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
             note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, volume, &parameters)?;
-            args.make(&mut engine)?
+            engine = args.open(BackendChoice::Cpu, volume)?;
+            args.make(&mut engine, &parameters, &skipping)?
         }
         made => made?,
     };
@@ -101,19 +118,14 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
 }
 
 impl RenderArgs {
-    fn open(
-        &self,
-        choice: BackendChoice,
-        volume: &Volume,
-        parameters: &CastParameters,
-    ) -> Result<Engine, Failure> {
+    fn open<'v>(&self, choice: BackendChoice, volume: &'v Volume) -> Result<Engine<'v>, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
         let job = Job {
             rays: self.rays() * u64::from(frames + u32::from(self.warms_up())),
             samples_per_ray: longest as f64 * self.look.sampling_factor,
         };
-        Engine::open(choice, &job, volume, self.look.storage.kind(volume), parameters)
+        Engine::open(choice, &job, volume, self.look.storage.kind(volume))
     }
 
     /// Rays of one frame.
@@ -130,28 +142,54 @@ impl RenderArgs {
         self.json || self.frames.is_some() || self.turntable.is_some()
     }
 
-    fn make(&self, engine: &mut Engine) -> Result<Made, Failure> {
+    fn make(
+        &self,
+        engine: &mut Engine<'_>,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+    ) -> Result<Made, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let bar = Bar::new("frames", u64::from(frames));
-        let mut made = Made { frames_ms: Vec::new(), samples: 0, picture_size: [0; 2], outputs: Vec::new() };
+        let shot = engine.prepare(parameters, skipping)?;
+        let mut made = Made {
+            frames_ms: Vec::new(),
+            samples: 0,
+            map_reads: 0,
+            white: None,
+            leaping: engine.leaping(shot).clone(),
+            picture_size: [0; 2],
+            outputs: Vec::new(),
+        };
         if self.warms_up() {
-            engine.cast(&self.camera.views(0.0)?)?;
+            engine.cast(shot, &self.camera.views(0.0)?)?;
         }
         for index in 0..frames {
             let turn_deg = self.turntable.map_or(0.0, |n| 360.0 / f64::from(n) * f64::from(index));
-            made.frames_ms.push(milliseconds(engine.cast(&self.camera.views(turn_deg)?)?));
+            made.frames_ms.push(milliseconds(engine.cast(shot, &self.camera.views(turn_deg)?)?));
             if let Some(path) = self.path_of(index, frames) {
                 let casts = engine.read()?;
-                let images: Vec<&Image> = casts.iter().map(|cast| &cast.image).collect();
-                let picture = self.camera.arrange(&images, self.background);
+                let picture = match self.show {
+                    Show::Picture => self.arrange(casts.iter().map(|cast| &cast.image)),
+                    Show::Samples(white) => {
+                        let white = white.map_or_else(|| most_reads(&casts), NonZeroU32::get);
+                        made.white = Some(white);
+                        let maps: Vec<Image> = casts.iter().map(|cast| heat_map(cast, white)).collect();
+                        self.arrange(&maps)
+                    }
+                };
                 write_png(&path, &picture, self.bits)?;
                 made.samples = casts.iter().map(|cast| cast.samples).sum();
+                made.map_reads = casts.iter().map(|cast| cast.map_reads).sum();
                 made.picture_size = [picture.width, picture.height];
                 made.outputs.push(path);
             }
             bar.advance();
         }
         Ok(made)
+    }
+
+    fn arrange<'i>(&self, images: impl IntoIterator<Item = &'i Image>) -> RgbImage {
+        self.camera.arrange(&images.into_iter().collect::<Vec<_>>(), self.background)
     }
 
     /// Where frame `index` of `frames` is written, if it is: each of a turntable, the last of repeated ones.
@@ -162,7 +200,7 @@ impl RenderArgs {
         }
     }
 
-    fn report(&self, loaded: &Loaded, look: &Look, engine: &Engine, made: &Made) -> Result<(), Failure> {
+    fn report(&self, loaded: &Loaded, look: &Look, engine: &Engine<'_>, made: &Made) -> Result<(), Failure> {
         let dims = loaded.volume.grid().dims();
         let frame_ms = median(&made.frames_ms);
         let settings = &look.settings;
@@ -184,13 +222,15 @@ impl RenderArgs {
                 "frames_ms": made.frames_ms,
                 "samples": made.samples,
                 "rays": self.rays(),
+                "skip": made.leaping.to_json(made.map_reads),
+                "white": made.white,
                 "upload_ms": milliseconds(engine.upload_time()),
                 "outputs": outputs,
                 "warnings": warnings,
             }));
         }
         eprintln!(
-            "{}×{}×{} → {}x{} {} on {} ({}): {frame_ms:.1} ms, {:.1} M samples → {}",
+            "{}×{}×{} → {}x{} {} on {} ({}): {frame_ms:.1} ms, {:.1} M samples, {} → {}",
             dims[0],
             dims[1],
             dims[2],
@@ -200,8 +240,12 @@ impl RenderArgs {
             engine.backend_name(),
             engine.device_name(),
             made.samples as f64 / 1e6,
+            made.leaping.described(made.map_reads),
             described(&made.outputs),
         );
+        if let Some(white) = made.white {
+            eprintln!("white is {white} samples and map reads");
+        }
         Ok(())
     }
 }

@@ -97,6 +97,42 @@ fn a_background_of_nan_is_as_clear_as_the_low_end_of_the_window() {
 }
 
 #[test]
+fn skipping_changes_no_picture() {
+    let bench = Bench::new();
+    for look in [
+        &["--tf", "ramp:0.5..1"][..],
+        &["--tf", "ramp:0.3..1,0.05..0.2"],
+        &["--mode", "mip"],
+        &["--iso", "0.5"],
+    ] {
+        bench.render("none.png", &[&["--skip", "none"], look].concat());
+        for structure in ["auto", "occupancy", "distance", "anisotropic"] {
+            bench.render("skip.png", &[&["--skip", structure], look].concat());
+            let same = bench.run(&["compare", "none.png", "skip.png", "--json"]).json();
+            assert_eq!(same["max_abs"], 0.0, "{look:?} {structure}");
+        }
+    }
+}
+
+#[test]
+fn a_heat_map_is_white_where_most_is_read() {
+    let bench = Bench::new();
+    let heat_map = |show: &str, skip: &str| {
+        let flags = ["--show", show, "--skip", skip, "--tf", "ramp:0.5..1", "--ert", "0", "--json"];
+        let white = bench.render("heat.png", &flags).json()["white"].as_u64().unwrap();
+        (white, image::open(bench.path("heat.png")).unwrap().into_rgb8())
+    };
+    let (white, base) = heat_map("samples", "none");
+    assert!((24..=48).contains(&white), "{white} samples through 24 voxels");
+    assert_eq!(base.get_pixel(0, 0).0, [0; 3]);
+    assert!(base.pixels().any(|pixel| pixel.0 == [255; 3]));
+    let sum = |picture: &image::RgbImage| picture.pixels().map(|pixel| u64::from(pixel.0[0])).sum::<u64>();
+    let (same_white, skipping) = heat_map(&format!("samples:{white}"), "distance");
+    assert_eq!(same_white, white);
+    assert!(sum(&skipping) < sum(&base) && sum(&skipping) > 0);
+}
+
+#[test]
 fn clipping_and_background_show() {
     let bench = Bench::new();
     let at = |name: &str, x, y| image::open(bench.path(name)).unwrap().into_rgb8().get_pixel(x, y).0;
@@ -173,4 +209,34 @@ fn the_gpu_makes_the_same_picture() {
     assert_eq!(run.json()["backend"], "gpu");
     let compared = bench.run(&["compare", "cpu.png", "gpu.png", "--json"]).json();
     assert!(compared["dssim"].as_f64().unwrap() <= 0.002, "{compared}");
+}
+
+#[test]
+fn the_gpu_skips_without_changing_the_picture() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let render = |output: &str, flags: &[&str]| {
+        let gpu = ["render", "sphere.nrrd", "-o", output, "--backend", "gpu", "--size", "32x24", "--json"];
+        let run = bench.run(&[&gpu[..], &["--ert", "0"], flags].concat());
+        assert_eq!(run.code, 0, "{flags:?}: {}", run.stderr);
+        run.json()
+    };
+    let looks: [(&[&str], &str); 4] = [
+        (&["--tf", "ramp:0.5..1"], "anisotropic"),
+        (&["--tf", "ramp:0.3..1,0.05..0.2"], "anisotropic"),
+        (&["--tf", "ramp:0.3..1,0.05..0.2", "--gradient-map", "none"], "anisotropic"),
+        (&["--mode", "mip"], "ranges"),
+    ];
+    for (look, structure) in looks {
+        let base = render("none.png", &[&["--skip", "none"], look].concat());
+        let skipped = render("auto.png", look);
+        assert_eq!(skipped["skip"]["structure"], structure, "{look:?}");
+        assert!(skipped["samples"].as_u64() < base["samples"].as_u64(), "{look:?}");
+        let same = bench.run(&["compare", "none.png", "auto.png", "--json"]).json();
+        assert!(same["max_abs"].as_f64().unwrap() <= 1.0 / 255.0 + 1e-6, "{look:?}: {same}");
+    }
+    let heat_map = render("heat.png", &["--show", "samples"]);
+    assert!(heat_map["white"].as_u64().unwrap() > 0);
 }

@@ -52,6 +52,13 @@ fn impossible_values_name_their_flag_and_range() {
         (&["--up", "Q"], "--up"),
         (&["--backend", "abacus"], "--backend"),
         (&["--bits", "12"], "--bits"),
+        (&["--skip", "octree"], "anisotropic"),
+        (&["--block-size", "1"], "from 2 to 16"),
+        (&["--block-size", "17"], "from 2 to 16"),
+        (&["--block-size", "-4"], "--block-size"),
+        (&["--gradient-map", "12"], "--gradient-map"),
+        (&["--show", "depth"], "samples"),
+        (&["--show", "samples:0"], "above 0"),
         (&["--no-such-flag"], "--no-such-flag"),
     ];
     for (flags, says) in cases {
@@ -70,6 +77,7 @@ fn contradictions_are_refused() {
     refuses(&bench, &["--orthographic", "1", "--fov", "1"], "--fov");
     refuses(&bench, &["--turntable", "2", "--frames", "2"], "--frames");
     refuses(&bench, &["--raw-size", "4x4x4"], "--raw-type");
+    refuses(&bench, &["--skip", "none", "--block-size", "4"], "--block-size needs a --skip");
 }
 
 #[test]
@@ -85,7 +93,8 @@ fn bad_files_are_refused() {
     for file in
         ["empty.nrrd", "noise.nii", "short.nrrd", "huge_1048576x1048576x1_uint8.raw", "missing.nrrd", "."]
     {
-        for args in [&["info", file][..], &["render", file, "-o", "x.png"], &["bench", "cast", file]] {
+        let render = ["render", file, "-o", "x.png"];
+        for args in [&["info", file][..], &render, &["bench", "cast", file], &["bench", "skip", file]] {
             let run = bench.run(args);
             assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);
             let errors: Vec<&str> = run.stderr.lines().filter(|line| line.starts_with("error: ")).collect();
@@ -114,6 +123,9 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         &["phantom", "sphere", "--size", "0", "-o", "x.nrrd"],
         &["phantom", "cube", "-o", "x.nrrd"],
         &["demo", "-o", "file"],
+        &["bench", "skip", "beetle:8", "--plot", "file"],
+        &["bench", "skip", "beetle:0"],
+        &["bench", "skip", "beetle:8", "--block-sizes", "4,99"],
     ] {
         let run = bench.run(args);
         assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);

@@ -25,9 +25,11 @@ fn render_reports_one_object() {
         "samples",
         "shading",
         "size",
+        "skip",
         "tf",
         "upload_ms",
         "warnings",
+        "white",
         "window",
     ];
     assert_eq!(keys(&json), expected);
@@ -42,6 +44,32 @@ fn render_reports_one_object() {
     assert_eq!(json["frames_ms"].as_array().unwrap().len(), 3);
     assert!(json["samples"].as_u64().unwrap() > 0);
     assert_eq!(json["outputs"], serde_json::json!(["a.png"]));
+    assert_eq!(keys(&json["skip"]), ["block_size", "bytes", "map_reads", "occupied_fraction", "structure"]);
+}
+
+#[test]
+fn render_tells_what_was_skipped() {
+    let bench = Bench::new();
+    let report = |flags: &[&str]| {
+        bench.render("s.png", &[&["--json", "--tf", "ramp:0.5..1", "--ert", "0"], flags].concat()).json()
+    };
+    let base = report(&["--skip", "none"]);
+    assert_eq!(base["skip"]["structure"], "none");
+    assert!(base["skip"]["block_size"].is_null() && base["skip"]["map_reads"] == 0);
+    for (structure, bytes) in [("occupancy", 12 * 12 * 12), ("distance", 1728), ("anisotropic", 8 * 1728)] {
+        let skipped = report(&["--skip", structure, "--block-size", "2"]);
+        let skip = &skipped["skip"];
+        assert_eq!((&skip["structure"], &skip["block_size"]), (&structure.into(), &2.into()));
+        assert_eq!(skip["bytes"], bytes, "{structure}");
+        assert!(skip["map_reads"].as_u64().unwrap() > 0, "{skip}");
+        let occupied = skip["occupied_fraction"].as_f64().unwrap();
+        assert!((0.05..0.6).contains(&occupied), "{skip}");
+        assert!(skipped["samples"].as_u64() < base["samples"].as_u64(), "{structure}");
+    }
+    let automatic = report(&[]);
+    assert_ne!(automatic["skip"]["structure"], "none");
+    let full = report(&["--window=-1000..255"]);
+    assert_eq!(full["skip"]["structure"], "none", "where everything is visible there is nothing to skip");
 }
 
 #[test]
@@ -78,6 +106,7 @@ fn info_tells_what_the_file_holds() {
         "robust_window",
         "size_mm",
         "spacing_mm",
+        "structures",
         "type",
         "warnings",
     ];
@@ -119,7 +148,7 @@ fn warnings_go_to_standard_error() {
 #[test]
 fn doctor_always_answers() {
     let json = Bench::new().run(&["doctor", "--json"]).json();
-    assert_eq!(keys(&json), ["adapters", "cpu_threads", "uses", "version", "why"]);
+    assert_eq!(keys(&json), ["adapters", "cpu_threads", "structures", "uses", "version", "why"]);
     for adapter in json["adapters"].as_array().unwrap() {
         assert_eq!(keys(adapter), ["api", "driver", "features", "is_software", "limits", "name", "tier"]);
     }
@@ -144,6 +173,78 @@ fn bench_cast_lists_every_mode() {
     let table =
         bench.run(&[&small[..], &["--modes", "dvr,iso", "--shadings", "none,shadow"]].concat()).stdout;
     assert_eq!(table.lines().filter(|line| line.starts_with("sphere ")).count(), 4, "{table}");
+}
+
+#[test]
+fn bench_skip_lists_every_structure_and_draws_charts() {
+    let bench = Bench::new();
+    let small = [
+        "bench",
+        "skip",
+        "sphere.nrrd",
+        "beetle:20",
+        "--size",
+        "20x20",
+        "--frames",
+        "1",
+        "--block-sizes",
+        "2,4",
+        "--backend",
+        "cpu",
+    ];
+    let json = bench.run(&[&small[..], &["--json", "--plot", "plots"]].concat()).json();
+    assert_eq!(keys(&json), ["device", "frames", "rows", "size"]);
+    assert_eq!(keys(&json["device"]), ["backend", "cpu_threads", "driver", "name"]);
+    let rows = json["rows"].as_array().unwrap();
+    let row_keys = [
+        "block_size",
+        "bytes",
+        "frame_ms",
+        "occupancy",
+        "oracle_ratio",
+        "ratio_to_base",
+        "reads_per_ray",
+        "samples_per_ray",
+        "skip",
+        "tf",
+        "update_ms",
+        "update_ms_voxels",
+        "volume",
+    ];
+    assert!(rows.iter().all(|row| keys(row) == row_keys));
+    let cases: Vec<&str> =
+        rows.iter().filter(|row| row["skip"] == "none").map(|row| row["tf"].as_str().unwrap()).collect();
+    assert_eq!(cases, ["ramp:0..1", "beetle-1d", "beetle-2d"]);
+    for rows in rows.chunks(7) {
+        let base = &rows[0];
+        let sizes: Vec<Option<u64>> = rows.iter().map(|row| row["block_size"].as_u64()).collect();
+        assert_eq!(sizes, [None, Some(2), Some(4), Some(2), Some(4), Some(2), Some(4)]);
+        assert_eq!((&base["ratio_to_base"], &base["reads_per_ray"]), (&1.0.into(), &0.0.into()));
+        assert!(base["update_ms"].is_null());
+        for row in &rows[1..] {
+            let number = |key: &str| row[key].as_f64().unwrap();
+            assert!(number("samples_per_ray") <= base["samples_per_ray"].as_f64().unwrap(), "{row}");
+            assert!(number("oracle_ratio") >= 1.0 && number("update_ms") > 0.0, "{row}");
+            assert!((0.0..=1.0).contains(&number("occupancy")), "{row}");
+        }
+    }
+    for chart in ["sphere-ramp_0..1-speed-up.svg", "beetle-beetle-2d-update.svg"] {
+        let svg = std::fs::read_to_string(bench.path("plots").join(chart)).unwrap();
+        assert!(svg.contains("anisotropic") && svg.contains("</svg>"), "{chart}");
+    }
+    let table = bench.run(&small).stdout;
+    assert_eq!(table.lines().filter(|line| line.contains(" anisotropic ")).count(), 6, "{table}");
+}
+
+#[test]
+fn bench_cast_skips_if_asked() {
+    let bench = Bench::new();
+    let samples = |flags: &[&str]| {
+        let small = ["bench", "cast", "sphere.nrrd", "--size", "16x16", "--frames", "1", "--backends", "cpu"];
+        let look = ["--modes", "dvr", "--shadings", "none", "--tf", "ramp:0.5..1", "--json"];
+        bench.run(&[&small[..], &look, flags].concat()).json()["rows"][0]["samples"].as_f64().unwrap()
+    };
+    assert!(samples(&["--skip", "distance", "--block-size", "2"]) < samples(&[]));
 }
 
 #[test]
@@ -203,6 +304,7 @@ fn every_command_has_help_with_an_example() {
         &["demo"],
         &["bench"],
         &["bench", "cast"],
+        &["bench", "skip"],
     ] {
         let run = bench.run(&[command, &["--help"]].concat());
         assert_eq!(run.code, 0);
@@ -215,9 +317,16 @@ fn every_command_has_help_with_an_example() {
 fn every_flag_is_in_the_reference() {
     let bench = Bench::new();
     let reference = std::fs::read_to_string(repository_file("docs/cli.md")).unwrap();
-    for command in
-        [&["info"][..], &["render"], &["compare"], &["phantom"], &["doctor"], &["demo"], &["bench", "cast"]]
-    {
+    for command in [
+        &["info"][..],
+        &["render"],
+        &["compare"],
+        &["phantom"],
+        &["doctor"],
+        &["demo"],
+        &["bench", "cast"],
+        &["bench", "skip"],
+    ] {
         let help = bench.run(&[command, &["--help"]].concat()).stdout;
         let flags = help
             .lines()

@@ -1,30 +1,10 @@
 use super::*;
-use crate::transfer::{BenchmarkRamp, TransferFunction};
-use glam::Vec3;
+use crate::scene::GradientMethod;
+use crate::skip::voxel_occupancy;
+use crate::transfer::BenchmarkRamp;
 
 fn normalised(volume: &Volume, index: usize) -> f64 {
     volume.voxels().value(index) / 255.0
-}
-
-/// The part of the voxels that a transfer function gives an opacity above zero; gradients are central differences.
-fn occupancy(volume: &Volume, transfer: &TransferFunction) -> f64 {
-    let [nx, ny, nz] = volume.grid().dims();
-    let at = |i: usize, j: usize, k: usize| normalised(volume, i + nx * (j + ny * k)) as f32;
-    let occupied: usize = (0..nz)
-        .into_par_iter()
-        .map(|k| {
-            let is_visible = |i: usize, j: usize| {
-                transfer.opacity_at(at(i, j, k)) > 0.0 && {
-                    let dx = at((i + 1).min(nx - 1), j, k) - at(i.saturating_sub(1), j, k);
-                    let dy = at(i, (j + 1).min(ny - 1), k) - at(i, j.saturating_sub(1), k);
-                    let dz = at(i, j, (k + 1).min(nz - 1)) - at(i, j, k.saturating_sub(1));
-                    transfer.gradient_opacity_at(0.5 * Vec3::new(dx, dy, dz).length()) > 0.0
-                }
-            };
-            (0..ny).map(|j| (0..nx).filter(|&i| is_visible(i, j)).count()).sum::<usize>()
-        })
-        .sum();
-    occupied as f64 / volume.grid().voxel_count() as f64
 }
 
 #[test]
@@ -34,7 +14,9 @@ fn occupancies_are_those_of_the_papers_volumes() {
     for phantom in [Phantom::Present, Phantom::Beetle, Phantom::Snake] {
         let volume = phantom.cube(SIZE).unwrap();
         for ramp in BenchmarkRamp::of_volume(phantom.name()) {
-            let fraction = occupancy(&volume, &ramp.transfer([SIZE; 3]).unwrap());
+            let transfer = ramp.transfer([SIZE; 3]).unwrap();
+            let fraction =
+                voxel_occupancy(&volume, volume.full_window(), &transfer, GradientMethod::default());
             found.push((ramp.name(), fraction, ramp.occupancy().unwrap()));
         }
     }

@@ -15,6 +15,7 @@ mod lanes;
 mod lanes_exact;
 mod lanes_wide;
 mod lut;
+mod oracle;
 mod ray;
 mod renderer;
 mod shade;
@@ -24,4 +25,4 @@ mod vector;
 mod volume;
 
 pub use ray::sample_count;
-pub use renderer::{Cast, Caster};
+pub use renderer::{Cast, Caster, Reads};

@@ -8,6 +8,7 @@ use super::extreme_value::{ExtremeValue, Maximum, Minimum};
 use super::first_hit::FirstHit;
 use super::lanes::{Lanes, MOST_LANES};
 use super::lanes_exact::Exact;
+use super::oracle::Oracle;
 use super::ray::{PixelRay, Ray, pixels_of_box};
 use super::value_sum::{Mean, ValueSum, XRay};
 use super::volume::{PaddedVoxels, Sampler};
@@ -37,6 +38,25 @@ pub struct Cast {
     pub samples: u64,
     /// Reads of the skip map along rays, those of shading not counted.
     pub map_reads: u64,
+    /// What each ray has read, in the order of the image's pixels.
+    pub reads: Vec<Reads>,
+}
+
+/// What a ray has read, for shading not counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Reads {
+    /// Samples.
+    pub samples: u32,
+    /// Reads of the skip map.
+    pub map_reads: u32,
+}
+
+impl Cast {
+    /// A picture whose rays have read what is given.
+    pub fn new(image: Image, reads: Vec<Reads>) -> Self {
+        let total = |of_ray: fn(&Reads) -> u32| reads.iter().map(|ray| u64::from(of_ray(ray))).sum();
+        Self { image, samples: total(|ray| ray.samples), map_reads: total(|ray| ray.map_reads), reads }
+    }
 }
 
 impl Caster {
@@ -82,6 +102,18 @@ impl Caster {
         self.cast_on(OneByOne, parameters, skip, views)
     }
 
+    /// What rays must read at the least, whatever the structure: every visible sample, and one read of a map for each run of
+    /// samples that are not. For composites; the picture stays transparent.
+    pub fn cast_by_oracle(&self, parameters: &CastParameters, view: &View) -> Cast {
+        let map = self.encoding.normalised_from_stored(parameters.window);
+        let context = Context::new(Sampler::new(&self.voxels, map), parameters, None);
+        match parameters.classifier {
+            Classifier::ValueGradient => cast_bands::<Oracle<ValueGradient>>(OneByOne, &context, view),
+            Classifier::PreIntegrated => cast_bands::<Oracle<PreIntegrated>>(OneByOne, &context, view),
+            Classifier::Value | Classifier::Isovalue => cast_bands::<Oracle<Value>>(OneByOne, &context, view),
+        }
+    }
+
     fn cast_on(
         &self,
         path: impl Path,
@@ -101,7 +133,7 @@ trait Path: Copy + Send + Sync {
     fn band_rows(self) -> usize;
 
     /// Casts the rays of a band.
-    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>) -> Reads;
+    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>);
 }
 
 #[derive(Clone, Copy)]
@@ -112,8 +144,8 @@ impl Path for OneByOne {
         Exact::PACKET[1]
     }
 
-    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>) -> Reads {
-        cast_packets::<A, Exact>((), context, rays, band)
+    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>) {
+        cast_packets::<A, Exact>((), context, rays, band);
     }
 }
 
@@ -125,19 +157,12 @@ impl<S: Simd> Path for Wide<S> {
         f32x16::<S>::PACKET[1]
     }
 
-    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>) -> Reads {
+    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>) {
         self.0.vectorize(
             #[inline(always)]
             || cast_packets::<A, f32x16<S>>(self.0, context, rays, band),
-        )
+        );
     }
-}
-
-/// What rays have read.
-#[derive(Clone, Copy, Default)]
-struct Reads {
-    samples: u64,
-    map_reads: u64,
 }
 
 /// Neighbouring rows of a picture.
@@ -148,6 +173,7 @@ struct Band<'a> {
     columns: Range<usize>,
     color: &'a mut [[f32; 4]],
     depth_m: &'a mut [f32],
+    reads: &'a mut [Reads],
 }
 
 fn cast_view(path: impl Path, context: &Context<'_>, view: &View) -> Cast {
@@ -173,19 +199,21 @@ fn cast_bands<A: Accumulate>(path: impl Path, context: &Context<'_>, view: &View
     let mut image = Image::transparent(width, height);
     let (rows, width) = (path.band_rows(), width as usize);
     let [hit_columns, hit_rows] = pixels_of_box(&rays, context.parameters, view.size);
-    let bands = image.color.par_chunks_mut(rows * width).zip(image.depth_m.par_chunks_mut(rows * width));
-    let reads = bands
+    let mut reads = vec![Reads::default(); image.color.len()];
+    let bands = image
+        .color
+        .par_chunks_mut(rows * width)
+        .zip(image.depth_m.par_chunks_mut(rows * width))
+        .zip(reads.par_chunks_mut(rows * width));
+    bands
         .enumerate()
         .filter(|(i, _)| i * rows < hit_rows.end && (i + 1) * rows > hit_rows.start)
-        .map(|(i, (color, depth_m))| {
+        .for_each(|(i, ((color, depth_m), reads))| {
             let columns = hit_columns.clone();
-            path.cast_band::<A>(context, &rays, Band { top: i * rows, width, columns, color, depth_m })
-        })
-        .reduce(Reads::default, |a, b| Reads {
-            samples: a.samples + b.samples,
-            map_reads: a.map_reads + b.map_reads,
+            let band = Band { top: i * rows, width, columns, color, depth_m, reads };
+            path.cast_band::<A>(context, &rays, band);
         });
-    Cast { image, samples: reads.samples, map_reads: reads.map_reads }
+    Cast::new(image, reads)
 }
 
 #[inline(always)]
@@ -194,10 +222,9 @@ fn cast_packets<A: Accumulate, L: Lanes>(
     context: &Context<'_>,
     rays: &RayField,
     band: Band<'_>,
-) -> Reads {
+) {
     let [columns, rows] = L::PACKET;
     let dims = context.sampler.dims().as_dvec3();
-    let mut reads = Reads::default();
     for left in band.columns.clone().step_by(columns) {
         let mut packet = [PixelRay::default(); MOST_LANES];
         let mut is_hit = false;
@@ -219,9 +246,7 @@ fn cast_packets<A: Accumulate, L: Lanes>(
             let pixel = lane / columns * band.width + left + lane % columns;
             band.color[pixel] = [r[lane], g[lane], b[lane], alpha[lane]];
             band.depth_m[pixel] = depth_m[lane];
-            reads.samples += samples[lane] as u64;
-            reads.map_reads += map_reads[lane] as u64;
+            band.reads[pixel] = Reads { samples: samples[lane] as u32, map_reads: map_reads[lane] as u32 };
         }
     }
-    reads
 }

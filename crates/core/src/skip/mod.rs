@@ -11,6 +11,7 @@
 mod block_grid;
 mod block_ranges;
 mod block_size;
+mod choice;
 mod distance;
 mod extremes;
 mod margin;
@@ -19,13 +20,16 @@ mod range_codes;
 mod skip_map;
 mod steps;
 mod visibility;
+mod voxel_occupancy;
 
 pub use block_grid::BlockGrid;
 pub use block_ranges::BlockRanges;
 pub use block_size::{BlockSize, SkipError};
+pub use choice::{Pace, Skip, SkipPlan, SkipRequest};
 pub use margin::margin_blocks;
 pub use occupancy::{NormalisedRanges, Occupancy};
 pub use range_codes::RangeCodes;
 pub use skip_map::{OCTANTS, SkipMap, Structure};
 pub use steps::steps_out_of;
 pub use visibility::{SecondAxis, Visibility};
+pub use voxel_occupancy::voxel_occupancy;

@@ -1,0 +1,203 @@
+//! A volume on a GPU.
+
+use super::{Leaping, Shot, median_ms};
+use crate::progress::Bar;
+use crate::skipping::Skipping;
+use std::time::{Duration, Instant};
+use wheatstone_core::cast::{CastParameters, Classifier};
+use wheatstone_core::gradient_map::GradientDepth;
+use wheatstone_core::reference::Cast;
+use wheatstone_core::scene::{GradientMethod, Mode};
+use wheatstone_core::skip::{BlockSize, Pace, SkipPlan};
+use wheatstone_core::view::View;
+use wheatstone_core::volume::{StorageKind, Volume};
+use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, GpuSkipMap, SkipBuilder, SkipKernels};
+use wheatstone_render::{
+    Gpu, GpuError, GpuGradientMap, GpuVolume, Leap, Prepared, Renderer, Sources, Target, TexelFormat,
+};
+
+/// The GPU's side of [`super::Engine`].
+pub(crate) struct GpuEngine {
+    pub(super) gpu: Gpu,
+    renderer: Renderer,
+    volume: GpuVolume,
+    storage: StorageKind,
+    kernels: Option<SkipKernels>,
+    gradient_map: Option<((GradientMethod, GradientDepth), GpuGradientMap)>,
+    scenes: Vec<(Prepared, Leaping)>,
+    targets: Vec<Target>,
+    pub(super) upload: Duration,
+}
+
+/// What rays leap over, on the device.
+enum Structures {
+    Nothing,
+    Map(GpuSkipMap),
+    Ranges(GpuBlockRanges),
+}
+
+impl GpuEngine {
+    pub(super) fn new(gpu: Gpu, volume: &Volume, storage: StorageKind) -> Result<Self, GpuError> {
+        let renderer = Renderer::new(&gpu)?;
+        let format = TexelFormat::for_volume(volume, storage, &gpu);
+        let bar = Bar::new("upload", 1);
+        let start = Instant::now();
+        let volume =
+            GpuVolume::upload_as(&gpu, volume, format, &mut |done, all| bar.set(done as u64, all as u64))?;
+        let upload = start.elapsed();
+        Ok(Self {
+            gpu,
+            renderer,
+            volume,
+            storage,
+            kernels: None,
+            gradient_map: None,
+            scenes: Vec::new(),
+            targets: Vec::new(),
+            upload,
+        })
+    }
+
+    pub(super) fn prepare(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+    ) -> Result<Shot, GpuError> {
+        let gradient_map = self.gradient_map(parameters, skipping)?;
+        let (structures, leaping) = match skipping.request.plan(self.storage, Pace::Idle) {
+            None => (Structures::Nothing, Leaping::NOTHING),
+            Some(plan) if matches!(parameters.mode, Mode::Mip | Mode::MinIp) => {
+                let kernels = self.kernels()?;
+                let ranges = GpuBlockRanges::of_values(&self.gpu, &kernels, &self.volume, plan.block_size)?;
+                let leaping = Leaping {
+                    structure: "ranges",
+                    block_size: Some(plan.block_size),
+                    occupied_fraction: None,
+                    bytes: ranges.byte_size(),
+                };
+                (Structures::Ranges(ranges), leaping)
+            }
+            Some(plan) => self.skip_map(parameters, gradient_map.as_ref(), &plan)?,
+        };
+        let leap = match &structures {
+            Structures::Nothing => Leap::Nothing,
+            Structures::Map(map) => Leap::EmptyBlocks(map),
+            Structures::Ranges(ranges) => Leap::IdleBlocks(ranges),
+        };
+        let sources = Sources { volume: &self.volume, gradient_map: gradient_map.as_ref(), leap };
+        let prepared = self.renderer.prepare(&self.gpu, &sources, parameters.clone())?;
+        self.scenes.push((prepared, leaping));
+        Ok(Shot(self.scenes.len() - 1))
+    }
+
+    fn skip_map(
+        &mut self,
+        parameters: &CastParameters,
+        gradient_map: Option<&GpuGradientMap>,
+        plan: &SkipPlan,
+    ) -> Result<(Structures, Leaping), GpuError> {
+        let mut builder = self.builder(gradient_map, plan.block_size)?;
+        let map = builder.map(&self.gpu, parameters, plan.structure)?;
+        let distances = map.read(&self.gpu)?;
+        let blocks = &distances[..map.grid().block_count()];
+        let occupied = blocks.iter().filter(|&&distance| distance == 0).count();
+        let occupied_fraction = occupied as f64 / blocks.len() as f64;
+        if !plan.pays(occupied_fraction) {
+            return Ok((Structures::Nothing, Leaping::not_worth_it(occupied_fraction)));
+        }
+        let leaping = Leaping::over_empty_blocks(plan, occupied_fraction, map.byte_size());
+        Ok((Structures::Map(map), leaping))
+    }
+
+    fn kernels(&mut self) -> Result<SkipKernels, GpuError> {
+        if let Some(kernels) = &self.kernels {
+            return Ok(kernels.clone());
+        }
+        let kernels = SkipKernels::new(&self.gpu)?;
+        self.kernels = Some(kernels.clone());
+        Ok(kernels)
+    }
+
+    /// The gradient map that the settings look gradients up in, if they do; the last one is kept.
+    fn gradient_map(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+    ) -> Result<Option<GpuGradientMap>, GpuError> {
+        let Some(depth) =
+            skipping.gradient_map.filter(|_| parameters.classifier == Classifier::ValueGradient)
+        else {
+            return Ok(None);
+        };
+        let kind = (parameters.gradient, depth);
+        if let Some((kept, map)) = &self.gradient_map
+            && *kept == kind
+        {
+            return Ok(Some(map.clone()));
+        }
+        let map = GpuGradientMap::new(&self.gpu, &self.volume, parameters.gradient, depth)?;
+        self.gradient_map = Some((kind, map.clone()));
+        Ok(Some(map))
+    }
+
+    fn builder(
+        &mut self,
+        gradient_map: Option<&GpuGradientMap>,
+        block_size: BlockSize,
+    ) -> Result<SkipBuilder, GpuError> {
+        let kernels = self.kernels()?;
+        match gradient_map {
+            Some(map) => SkipBuilder::with_gradients(&self.gpu, &kernels, &self.volume, map, block_size),
+            None => SkipBuilder::new(&self.gpu, &kernels, &self.volume, block_size),
+        }
+    }
+
+    pub(super) fn cast(&mut self, shot: Shot, views: &[View]) -> Result<Duration, GpuError> {
+        let fits = self.targets.len() == views.len()
+            && self.targets.iter().zip(views).all(|(target, view)| target.size() == view.size);
+        if !fits {
+            self.targets = views.iter().map(|v| Target::new(&self.gpu, v.size)).collect::<Result<_, _>>()?;
+        }
+        let start = Instant::now();
+        self.renderer.render(&self.gpu, &self.scenes[shot.0].0, views, &self.targets)?;
+        Ok(start.elapsed())
+    }
+
+    pub(super) fn read(&self) -> Result<Vec<Cast>, GpuError> {
+        self.targets.iter().map(|target| target.read(&self.gpu)).collect()
+    }
+
+    pub(super) fn leaping(&self, shot: Shot) -> &Leaping {
+        &self.scenes[shot.0].1
+    }
+
+    pub(super) fn update_ms(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+        plan: &SkipPlan,
+    ) -> Result<f64, GpuError> {
+        let gradient_map = self.gradient_map(parameters, skipping)?;
+        let mut builder = self.builder(gradient_map.as_ref(), plan.block_size)?;
+        let map = builder.map(&self.gpu, parameters, plan.structure)?;
+        median_ms(|| {
+            builder.update(&self.gpu, parameters, &map)?;
+            self.gpu.wait()
+        })
+    }
+
+    pub(super) fn update_ms_by_voxels(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+        block_size: BlockSize,
+    ) -> Result<f64, GpuError> {
+        let gradient_map = self.gradient_map(parameters, skipping)?;
+        let kernels = self.kernels()?;
+        let baseline = DmBaseline::new(&self.gpu, &kernels, &self.volume, gradient_map.as_ref(), block_size)?;
+        median_ms(|| {
+            baseline.map(&self.gpu, parameters)?;
+            self.gpu.wait()
+        })
+    }
+}

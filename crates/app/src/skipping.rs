@@ -1,0 +1,147 @@
+//! What rays leap over, as the user asks for it.
+
+use crate::backend::structure_name;
+use crate::failure::Failure;
+use crate::spec;
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use wheatstone_core::gradient_map::GradientDepth;
+use wheatstone_core::skip::{BlockSize, Pace, Skip, SkipPlan, SkipRequest};
+use wheatstone_core::volume::StorageKind;
+
+/// Flags of empty-space skipping.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Empty space")]
+pub(crate) struct SkipArgs {
+    /// What rays leap over empty space by; the picture stays the same.
+    #[arg(long, value_enum)]
+    skip: Option<SkipName>,
+
+    /// Voxels along each side of a block, 2 to 16 [default: 4, or as many as keep a structure below a tenth of the volume].
+    #[arg(long, value_name = "N", value_parser = spec::block_size, allow_negative_numbers = true)]
+    block_size: Option<BlockSize>,
+
+    /// Bits of the gradient magnitudes that two-dimensional transfer functions look up on a GPU; none estimates them at each
+    /// sample.
+    #[arg(long, value_enum, default_value_t = GradientMapName::Eight)]
+    gradient_map: GradientMapName,
+}
+
+/// What rays leap by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SkipName {
+    /// What suits volume and transfer function.
+    Auto,
+    /// Nothing.
+    None,
+    /// Which blocks are occupied.
+    Occupancy,
+    /// The distance to the nearest occupied block.
+    Distance,
+    /// The same for each octant of directions.
+    Anisotropic,
+}
+
+/// Precision of gradient magnitudes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GradientMapName {
+    /// 8 bits.
+    #[value(name = "8")]
+    Eight,
+    /// 16 bits.
+    #[value(name = "16")]
+    Sixteen,
+    /// No map.
+    None,
+}
+
+/// What an engine is to make besides the picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Skipping {
+    /// What rays leap by.
+    pub(crate) request: SkipRequest,
+    /// Precision of the gradient map of two-dimensional transfer functions, if there is to be one.
+    pub(crate) gradient_map: Option<GradientDepth>,
+}
+
+impl Skipping {
+    /// By what suits volume and transfer function.
+    pub(crate) const AUTO: Self =
+        Self::by(SkipRequest { skip: Skip::Auto, block_size: None }, GradientMapName::Eight);
+
+    /// As asked.
+    pub(crate) const fn by(request: SkipRequest, gradient_map: GradientMapName) -> Self {
+        let gradient_map = match gradient_map {
+            GradientMapName::Eight => Some(GradientDepth::Bits8),
+            GradientMapName::Sixteen => Some(GradientDepth::Bits16),
+            GradientMapName::None => None,
+        };
+        Self { request, gradient_map }
+    }
+}
+
+impl SkipArgs {
+    /// What is asked for; `default` if that is left open.
+    pub(crate) fn resolve(&self, default: SkipName) -> Result<Skipping, Failure> {
+        let skip = match self.skip.unwrap_or(default) {
+            SkipName::Auto => Skip::Auto,
+            SkipName::None => Skip::None,
+            SkipName::Occupancy => Skip::Occupancy,
+            SkipName::Distance => Skip::Distance,
+            SkipName::Anisotropic => Skip::Anisotropic,
+        };
+        if skip == Skip::None && self.block_size.is_some() {
+            return Err(Failure::input("--block-size needs a --skip other than none"));
+        }
+        Ok(Skipping::by(SkipRequest { skip, block_size: self.block_size }, self.gradient_map))
+    }
+}
+
+/// What a structure takes by default.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StructureBytes {
+    name: &'static str,
+    side: u32,
+    bytes: usize,
+    part_of_volume: f64,
+}
+
+impl StructureBytes {
+    /// One object of a report.
+    pub(crate) fn to_json(&self) -> Value {
+        json!({
+            "structure": self.name,
+            "block_size": self.side,
+            "bytes": self.bytes,
+            "part_of_volume": self.part_of_volume,
+        })
+    }
+}
+
+/// What each structure takes by default for a volume held in a precision: the three maps, and the ranges that the default
+/// one is made from.
+pub(crate) fn structures(dims: [usize; 3], storage: StorageKind) -> Vec<StructureBytes> {
+    let volume_bytes = (dims.iter().product::<usize>() * storage.byte_size()) as f64;
+    let row = |name, plan: &SkipPlan, bytes: usize| StructureBytes {
+        name,
+        side: plan.block_size.sides()[0],
+        bytes,
+        part_of_volume: bytes as f64 / volume_bytes,
+    };
+    let plan = |skip| SkipRequest { skip, block_size: None }.plan(storage, Pace::Idle);
+    let ranges = plan(Skip::Auto).map(|plan| row("ranges", &plan, plan.ranges_byte_size(dims)));
+    let maps = [Skip::Occupancy, Skip::Distance, Skip::Anisotropic]
+        .into_iter()
+        .filter_map(plan)
+        .map(|plan| row(structure_name(plan.structure), &plan, plan.byte_size(dims)));
+    ranges.into_iter().chain(maps).collect()
+}
+
+/// Structures in one line.
+pub(crate) fn described(structures: &[StructureBytes]) -> String {
+    let described = |s: &StructureBytes| {
+        let kibibytes = s.bytes as f64 / 1024.0;
+        format!("{} {kibibytes:.0} KiB ({:.1} %, {}³)", s.name, 100.0 * s.part_of_volume, s.side)
+    };
+    structures.iter().map(described).collect::<Vec<_>>().join(", ")
+}
