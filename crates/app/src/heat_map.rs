@@ -32,7 +32,7 @@ mod tests {
             [(0, 0), (3, 1), (7, 1), (20, 0)].map(|(samples, map_reads)| Reads { samples, map_reads });
         let cast = Cast::new(Image::transparent(2, 2), reads.to_vec());
         assert_eq!((cast.samples, cast.map_reads), (30, 2));
-        assert_eq!(most_reads(&[cast.clone()]), 20);
+        assert_eq!(most_reads(std::slice::from_ref(&cast)), 20);
         let levels: Vec<f32> = heat_map(&cast, 8).color.iter().map(|c| c[0]).collect();
         assert_eq!(levels, [0.0, 0.5, 1.0, 1.0]);
     }

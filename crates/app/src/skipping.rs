@@ -108,7 +108,7 @@ pub(crate) struct StructureBytes {
 
 impl StructureBytes {
     /// One object of a report.
-    pub(crate) fn to_json(&self) -> Value {
+    pub(crate) fn to_json(self) -> Value {
         json!({
             "structure": self.name,
             "block_size": self.side,

@@ -178,7 +178,7 @@ impl SkipBenchArgs {
     }
 
     fn case<'a>(&self, name: &'a str, volume: &Volume, transfer: &TransferSpec) -> Result<Case<'a>, Failure> {
-        let resolved = transfer.resolve(volume, Some(volume.full_window()))?;
+        let resolved = transfer.resolve(volume, None)?;
         let settings =
             Settings { early_termination: None, ..Settings::new(resolved.window, resolved.transfer) };
         let placement = Placement::new(volume, world_from_patient(volume.grid(), self.up.direction()));

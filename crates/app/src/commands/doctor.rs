@@ -39,7 +39,7 @@ pub(crate) fn run(args: &DoctorArgs) -> Result<(), Failure> {
             "cpu_threads": threads,
             "uses": choice.uses,
             "why": choice.why,
-            "structures": structures(EXAMPLE_DIMS, StorageKind::U8).iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
+            "structures": structures(EXAMPLE_DIMS, StorageKind::U8).into_iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
         }));
     }
     let mut lines: Vec<String> = adapters.iter().map(adapter_text).collect();

@@ -58,7 +58,7 @@ fn as_json(args: &InfoArgs, loaded: &Loaded, statistics: &Statistics) -> Value {
         "percentiles": percentiles,
         "robust_window": [robust.lo(), robust.hi()],
         "non_finite_voxels": volume.non_finite_count(),
-        "structures": structures(grid.dims(), StorageKind::lossless_for(volume)).iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
+        "structures": structures(grid.dims(), StorageKind::lossless_for(volume)).into_iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
         "warnings": warnings,
     })
 }

@@ -16,7 +16,7 @@ fn occupancies_are_those_of_the_papers_volumes() {
         for ramp in BenchmarkRamp::of_volume(phantom.name()) {
             let transfer = ramp.transfer([SIZE; 3]).unwrap();
             let fraction =
-                voxel_occupancy(&volume, volume.full_window(), &transfer, GradientMethod::default());
+                voxel_occupancy(&volume, ramp.window().unwrap(), &transfer, GradientMethod::default());
             found.push((ramp.name(), fraction, ramp.occupancy().unwrap()));
         }
     }

@@ -18,7 +18,8 @@ impl<C: Classify> Accumulate for Oracle<C> {
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let mut walk = Walk::along(context, token, ray);
-        let (mut samples, mut runs) = (zero, zero);
+        let least_transmittance = L::splat(token, 1.0 - context.parameters.termination_alpha);
+        let (mut samples, mut runs, mut transmittance) = (zero, zero, one);
         let mut previous = context.value_at(token, ray.at(L::splat(token, C::VALUE_OFFSET - 1.0)));
         let mut was_visible = walk.is_active;
         while walk.is_active.any() {
@@ -28,6 +29,8 @@ impl<C: Classify> Accumulate for Oracle<C> {
             samples += L::select(walk.is_active & is_visible, one, zero);
             runs += L::select(walk.is_active & was_visible & !is_visible, one, zero);
             (previous, was_visible) = (value, is_visible);
+            transmittance *= (log2 * ray.step_length).exp2();
+            walk.is_active = walk.is_active & !transmittance.le(least_transmittance);
             walk.advance();
         }
         Pixels {

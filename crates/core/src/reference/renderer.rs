@@ -103,7 +103,7 @@ impl Caster {
     }
 
     /// What rays must read at the least, whatever the structure: every visible sample, and one read of a map for each run of
-    /// samples that are not. For composites; the picture stays transparent.
+    /// samples that are not, up to the end of the ray. For composites; the picture stays transparent.
     pub fn cast_by_oracle(&self, parameters: &CastParameters, view: &View) -> Cast {
         let map = self.encoding.normalised_from_stored(parameters.window);
         let context = Context::new(Sampler::new(&self.voxels, map), parameters, None);

@@ -1,11 +1,12 @@
 //! The ramps that benchmark volumes are measured with.
 
 use super::{TransferError, TransferFunction};
+use crate::volume::Window;
 
 /// Voxels along the side of a volume that the gradient bounds are given for.
 const SIDE: f32 = 256.0;
 
-/// A grey ramp (DM Eq. 16) over the range of a benchmark volume's values, by name.
+/// A grey ramp (DM Eq. 16) that a benchmark volume is shown with, by name.
 ///
 /// `present`, `beetle` and `snake` are phantoms, which stand in for DM's volumes; `-1d` and `-2d` are the rows of DM Table 2,
 /// with the bounds at which the phantoms are as occupied. Surfaces of a finer phantom are as thick as before, so that
@@ -72,6 +73,12 @@ impl BenchmarkRamp {
     /// The part of the voxels of DM's volume that have an opacity above zero (DM Table 2).
     pub fn occupancy(&self) -> Option<f64> {
         self.occupancy
+    }
+
+    /// What the values are normalised by: all 8 bits for phantoms (DM Eq. 15), whose brightest voxels are darker; `None` is
+    /// the range of the volume.
+    pub fn window(&self) -> Option<Window> {
+        self.occupancy.and_then(|_| Window::new(0.0, 255.0).ok())
     }
 
     /// The transfer function for a volume of the given dimensions.

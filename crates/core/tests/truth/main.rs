@@ -7,6 +7,7 @@ mod analytic;
 mod clipping;
 mod gradients;
 mod lanes;
+mod oracle;
 mod orientation;
 mod properties;
 mod resolution;
