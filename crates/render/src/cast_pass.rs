@@ -262,7 +262,11 @@ impl CastPass {
             &[
                 texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
                 wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                storage_buffer(true, 16),
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
                 buffer(wgpu::BufferBindingType::Uniform, 16 * LUT_1D_ENTRIES as u64),
                 texture_3d(wgpu::TextureSampleType::Uint),
                 texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
@@ -274,7 +278,7 @@ impl CastPass {
             &[
                 storage_texture(wgpu::TextureFormat::Rgba32Float),
                 storage_texture(wgpu::TextureFormat::Rgba32Float),
-                storage_buffer(false, RAY_STATE_BYTES),
+                buffer(wgpu::BufferBindingType::Storage { read_only: false }, RAY_STATE_BYTES),
             ],
         );
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -372,10 +376,6 @@ fn bind_group_layout(
 
 fn uniform<T>() -> wgpu::BindingType {
     buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
-}
-
-fn storage_buffer(read_only: bool, smallest: u64) -> wgpu::BindingType {
-    buffer(wgpu::BufferBindingType::Storage { read_only }, smallest)
 }
 
 fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {

@@ -8,6 +8,7 @@ use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, 
 use crate::target::Target;
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
+use half::f16;
 use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
@@ -126,13 +127,13 @@ impl Renderer {
         });
         // One of the two table bindings holds the table, the other an empty one.
         let entries = parameters.lut.entries();
-        let (lut_1d, lut_2d) = if parameters.lut.height() == 1 {
-            (packed(entries), &[[0.0; 4]][..])
+        let lut = &parameters.lut;
+        let (lut_1d, lut_2d) = if lut.height() == 1 {
+            (packed(entries), lut_texture(gpu, [1, 1], &[[0.0; 4]]))
         } else {
-            (vec![[0; 4]; LUT_1D_ENTRIES], entries)
+            (vec![[0; 4]; LUT_1D_ENTRIES], lut_texture(gpu, [lut.width(), lut.height()], entries))
         };
         let lut_1d = init_buffer(gpu, "lut", bytemuck::cast_slice(&lut_1d), wgpu::BufferUsages::UNIFORM);
-        let lut_2d = init_buffer(gpu, "2D lut", bytemuck::cast_slice(lut_2d), wgpu::BufferUsages::STORAGE);
         let frame = bind_group(
             gpu,
             &self.cast_pass.frame_layout,
@@ -145,7 +146,7 @@ impl Renderer {
             &[
                 wgpu::BindingResource::TextureView(&volume.texture),
                 wgpu::BindingResource::Sampler(&self.sampler),
-                lut_2d.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&lut_2d),
                 lut_1d.as_entire_binding(),
                 wgpu::BindingResource::TextureView(leap_texture.as_ref().unwrap_or(&self.no_map)),
                 wgpu::BindingResource::TextureView(gradient_map.map_or(&volume.texture, |map| &map.view)),
@@ -252,6 +253,29 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// A two-dimensional table as `lib/lut_2d.wgsl` reads it.
+fn lut_texture(gpu: &Gpu, [width, height]: [usize; 2], entries: &[LutEntry]) -> wgpu::TextureView {
+    let texels: Vec<f16> = entries.iter().flatten().map(|&channel| f16::from_f32(channel)).collect();
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("2D lut"),
+        size: wgpu::Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    gpu.device
+        .create_texture_with_data(
+            &gpu.queue,
+            &descriptor,
+            wgpu::util::TextureDataOrder::LayerMajor,
+            bytemuck::cast_slice(&texels),
+        )
+        .create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// A one-dimensional table as `lib/lut_1d.wgsl` reads it.

@@ -205,14 +205,13 @@ fn cast_bands<A: Accumulate>(path: impl Path, context: &Context<'_>, view: &View
         .par_chunks_mut(rows * width)
         .zip(image.depth_m.par_chunks_mut(rows * width))
         .zip(reads.par_chunks_mut(rows * width));
-    bands
-        .enumerate()
-        .filter(|(i, _)| i * rows < hit_rows.end && (i + 1) * rows > hit_rows.start)
-        .for_each(|(i, ((color, depth_m), reads))| {
+    bands.enumerate().filter(|(i, _)| i * rows < hit_rows.end && (i + 1) * rows > hit_rows.start).for_each(
+        |(i, ((color, depth_m), reads))| {
             let columns = hit_columns.clone();
             let band = Band { top: i * rows, width, columns, color, depth_m, reads };
             path.cast_band::<A>(context, &rays, band);
-        });
+        },
+    );
     Cast::new(image, reads)
 }
 
