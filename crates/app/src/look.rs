@@ -38,7 +38,7 @@ pub(crate) struct LookArgs {
     #[arg(long, value_name = "F", default_value = "1", value_parser = spec::within(0.01..=32.0), allow_negative_numbers = true)]
     pub(crate) sampling_factor: f64,
 
-    /// Opacity at which a ray ends; 0 follows every ray to its end.
+    /// Opacity at which a ray ends; 0 follows every ray until less than 2⁻²⁴ passes it.
     #[arg(long, value_name = "T", default_value = "0.99", value_parser = spec::within(0.0..=1.0), allow_negative_numbers = true)]
     pub(crate) ert: f64,
 

@@ -21,9 +21,9 @@ pub(crate) struct SkipArgs {
     #[arg(long, value_name = "N", value_parser = spec::block_size, allow_negative_numbers = true)]
     block_size: Option<BlockSize>,
 
-    /// Bits of the gradient magnitudes that two-dimensional transfer functions look up on a GPU; none estimates them at each
-    /// sample.
-    #[arg(long, value_enum, default_value_t = GradientMapName::Eight)]
+    /// Bits of the gradient magnitudes that two-dimensional transfer functions look up on a GPU: faster, at the price of a
+    /// second volume, and a little softer; none estimates them at each sample, as the CPU renderer does.
+    #[arg(long, value_enum, default_value_t = GradientMapName::None)]
     gradient_map: GradientMapName,
 }
 
@@ -67,7 +67,7 @@ pub(crate) struct Skipping {
 impl Skipping {
     /// By what suits volume and transfer function.
     pub(crate) const AUTO: Self =
-        Self::by(SkipRequest { skip: Skip::Auto, block_size: None }, GradientMapName::Eight);
+        Self::by(SkipRequest { skip: Skip::Auto, block_size: None }, GradientMapName::None);
 
     /// As asked.
     pub(crate) const fn by(request: SkipRequest, gradient_map: GradientMapName) -> Self {

@@ -213,6 +213,11 @@ impl GpuVolume {
         })
     }
 
+    /// Voxels along each axis.
+    pub fn dims(&self) -> [usize; 3] {
+        self.dims
+    }
+
     /// How the voxels are held.
     pub fn format(&self) -> TexelFormat {
         self.format

@@ -8,7 +8,7 @@ use wheatstone_core::cast::{CastParameters, Classifier};
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{GradientMethod, Mode};
-use wheatstone_core::skip::{BlockSize, Pace, SkipPlan};
+use wheatstone_core::skip::{BlockGrid, BlockSize, OCTANTS, Pace, SkipPlan, Structure};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, GpuSkipMap, SkipBuilder, SkipKernels};
@@ -77,7 +77,10 @@ impl GpuEngine {
                 };
                 (Structures::Ranges(ranges), leaping)
             }
-            Some(plan) => self.skip_map(parameters, gradient_map.as_ref(), &plan)?,
+            Some(plan) => {
+                let plan = self.within_limits(plan);
+                self.skip_map(parameters, gradient_map.as_ref(), &plan)?
+            }
         };
         let leap = match &structures {
             Structures::Nothing => Leap::Nothing,
@@ -88,6 +91,17 @@ impl GpuEngine {
         let prepared = self.renderer.prepare(&self.gpu, &sources, parameters.clone())?;
         self.scenes.push((prepared, leaping));
         Ok(Shot(self.scenes.len() - 1))
+    }
+
+    /// The octants of an anisotropic map are stacked: where the device has no texture of that depth, one map serves them all.
+    fn within_limits(&self, plan: SkipPlan) -> SkipPlan {
+        let blocks = BlockGrid::new(self.volume.dims(), plan.block_size).dims();
+        let is_too_deep = blocks[2] * OCTANTS > self.gpu.capabilities().largest_3d_side as usize;
+        if plan.structure == Structure::Anisotropic && is_too_deep {
+            plan.with_structure(Structure::Distance)
+        } else {
+            plan
+        }
     }
 
     fn skip_map(

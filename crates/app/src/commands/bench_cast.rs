@@ -24,8 +24,8 @@ const UPLOADS: usize = 3;
 
 /// Frame times of every mode on both casters, interleaved frame by frame; medians.
 ///
-/// The camera turns once about the volume at the DM test distance. Rays are followed to their ends unless --ert is
-/// given, and the window is the values' range.
+/// The camera turns once about the volume at the DM test distance. Rays end when less than 2⁻²⁴ passes them
+/// unless --ert is given, and the window is the values' range.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     wheatstone bench cast bonsai.nii.gz engine.nii.gz --up A\n  \

@@ -37,8 +37,8 @@ const STRUCTURES: [Structure; 3] = [Structure::Occupancy, Structure::Distance, S
 /// Frame and update times of every structure of empty-space skipping, by the protocol of Deakin and Knackstedt 2020.
 ///
 /// The camera turns about the volume by 1.5 degrees per frame (fewer than 60 frames are spread over the same 90 degrees), at
-/// the distance of the square root of 3 and with a field of view of 1 radian. Rays are followed to their ends. Each frame is
-/// made with every structure and block size in turn; times are medians.
+/// the distance of the square root of 3 and with a field of view of 1 radian. There is no early termination: rays end when less than
+/// 2⁻²⁴ passes them. Each frame is made with every structure and block size in turn; times are medians.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     wheatstone bench skip\n  \

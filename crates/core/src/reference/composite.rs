@@ -42,12 +42,13 @@ impl<C: Classify> Accumulate for Composite<C> {
             let value = context.value_at(token, ray.at(walk.index + C::VALUE_OFFSET));
             samples += L::select(walk.is_active, one, zero);
             let may_be_visible = walk.is_active & C::may_be_visible(context, token, value, previous);
-            is_transparent = !may_be_visible;
+            is_transparent = walk.is_active;
             if may_be_visible.any() {
                 let position = ray.at(walk.index);
                 let classified = C::classify(context, token, position, value, previous);
                 let log2 = L::select(may_be_visible, classified.entry.log2, zero);
                 let step_transmittance = (log2 * ray.step_length).exp2();
+                is_transparent = one.le(step_transmittance);
                 let lit = shade::<C, L>(context, token, ray, position, &classified);
                 rgb = lit.mul_add((one - step_transmittance) * transmittance, rgb);
                 transmittance *= step_transmittance;

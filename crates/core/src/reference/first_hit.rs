@@ -24,13 +24,8 @@ impl Accumulate for FirstHit {
         let mut walk = Walk::along(context, token, ray);
         let mut is_found = !walk.is_active & walk.is_active;
         while walk.is_active.any() {
-            // The step out of an occupied block may cross the surface as well.
-            walk.leap(token, walk.left_before());
-            if walk.has_leapt.any() {
-                let skipped_in = isovalue.le(context.value_at_outlined(token, ray.at(walk.index - 1.0)));
-                samples += L::select(walk.has_leapt, one, zero);
-                was_in = (skipped_in & walk.has_leapt) | (was_in & !walk.has_leapt);
-            }
+            // What is leapt over is on the side that the ray was on.
+            walk.leap(token, walk.is_active);
             let is_in = isovalue.le(context.value_at(token, ray.at(walk.index)));
             samples += L::select(walk.is_active, one, zero);
             let has_crossed = walk.is_active & ((is_in & !was_in) | (was_in & !is_in));

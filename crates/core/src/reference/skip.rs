@@ -23,6 +23,8 @@ pub(super) struct SkipSampler<'a> {
     last_block: Vec3A,
     /// Distance, in blocks, up to which a block counts as occupied: samples read that much further than their own block.
     margin: f32,
+    /// Whether the first sample in an empty block must be taken as well, as it reads what is behind it.
+    reads_behind: bool,
 }
 
 impl<'a> SkipSampler<'a> {
@@ -37,11 +39,13 @@ impl<'a> SkipSampler<'a> {
             _ if is_preintegrated => (0.5 * (step_length - 1.0) / shortest).ceil(),
             _ => 0.0,
         };
+        let reads_behind = matches!(mode, Mode::Isosurface { .. }) || margin > 0.0;
         Self {
             map,
             blocks_from_voxel: Vec3A::from(sides.map(|side| side as f32)).recip(),
             last_block: Vec3A::from(map.grid().dims().map(|n| (n - 1) as f32)),
             margin: margin.max(0.0),
+            reads_behind,
         }
     }
 
@@ -149,6 +153,8 @@ pub(super) struct Walk<'a, L: Lanes> {
     pub(super) has_leapt: L::Mask,
     /// The first sample that may be outside the occupied block.
     leave: L,
+    /// For which rays the sample before was in an occupied block, or in one that was not looked up.
+    comes_from_occupied: L::Mask,
     end: L,
     blocks: Option<Blocks<'a, L>>,
     /// Reads of the map.
@@ -165,6 +171,7 @@ impl<'a, L: Lanes> Walk<'a, L> {
             is_active,
             has_leapt: is_active & !is_active,
             leave: first,
+            comes_from_occupied: is_active,
             end,
             blocks,
             map_reads: L::splat(token, 0.0),
@@ -181,22 +188,30 @@ impl<'a, L: Lanes> Walk<'a, L> {
         Self::new(token, L::splat(token, 0.0), ray.sample_count, blocks)
     }
 
-    /// Moves rays that have left their block, of those that may leap, to the next sample in an occupied one.
+    /// Moves rays that have left their block, of those that may leap, to the next sample that may contribute.
     #[inline(always)]
     pub(super) fn leap(&mut self, token: L::Token, may_leap: L::Mask) {
         let Some(blocks) = &self.blocks else { return };
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-        let mut looks = self.is_active & may_leap & self.leave.le(self.index);
+        let has_left = self.leave.le(self.index);
+        let mut looks = self.is_active & may_leap & has_left;
+        self.comes_from_occupied = self.comes_from_occupied | (has_left & !looks);
         self.has_leapt = looks & !looks;
         while looks.any() {
             let look = blocks.look(token, self.index);
             self.map_reads += L::select(looks, one, zero);
             let next = self.index + look.steps;
-            let is_empty = looks & look.is_empty;
+            let mut leaps = looks & look.is_empty;
             self.leave = L::select(looks, next, self.leave);
-            self.index = L::select(is_empty, next, self.index);
+            if blocks.sampler.reads_behind {
+                let stays = leaps & self.comes_from_occupied;
+                self.leave = L::select(stays, self.index + 1.0, self.leave);
+                self.comes_from_occupied = (self.comes_from_occupied | looks) & !(looks & look.is_empty);
+                leaps = leaps & !stays;
+            }
+            self.index = L::select(leaps, next, self.index);
             self.is_active = self.is_active & self.index.lt(self.end);
-            looks = is_empty & self.is_active;
+            looks = leaps & self.is_active;
             self.has_leapt = self.has_leapt | looks;
         }
     }
@@ -206,11 +221,5 @@ impl<'a, L: Lanes> Walk<'a, L> {
     pub(super) fn advance(&mut self) {
         self.index = L::select(self.is_active, self.index + 1.0, self.index);
         self.is_active = self.is_active & self.index.lt(self.end);
-    }
-
-    /// The rays that left their block before the sample before.
-    #[inline(always)]
-    pub(super) fn left_before(&self) -> L::Mask {
-        self.leave.lt(self.index)
     }
 }

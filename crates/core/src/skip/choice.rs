@@ -82,6 +82,11 @@ impl SkipRequest {
 }
 
 impl SkipPlan {
+    /// The same blocks with another structure.
+    pub fn with_structure(self, structure: Structure) -> Self {
+        Self { structure, ..self }
+    }
+
     /// A structure that is asked for by name.
     pub fn new(structure: Structure, block_size: BlockSize) -> Self {
         Self { structure, block_size, is_open: false }

@@ -75,8 +75,9 @@ fn assert_agree(volume: &Volume, kind: StorageKind, settings: &Settings, what: &
             "{what} from {from}: {far_off} of the pixels are off"
         );
         let depths = fast.image.depth_m.iter().zip(&exact.image.depth_m);
-        let is_other =
-            |(a, b): &(&f32, &f32)| a != b && !(f64::from(*a - *b).abs() < tolerance::LANES_DEPTH_M);
+        let is_other = |(a, b): &(&f32, &f32)| {
+            a.is_finite() != b.is_finite() || f64::from(*a - *b).abs() > tolerance::LANES_DEPTH_M
+        };
         let other = depths.filter(is_other).count() as f64 / exact_hits as f64;
         assert!(other <= tolerance::LANES_OTHER_PIXELS, "{what} from {from}: {other} of the depths are off");
         let samples = fast.samples.abs_diff(exact.samples) as f64 / exact.samples as f64;

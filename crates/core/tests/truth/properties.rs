@@ -115,7 +115,7 @@ fn settings() -> impl Strategy<Value = Settings> {
 }
 
 /// Eyes in, near and far from the volume, many of them looking along an axis.
-pub(crate) fn views() -> impl Strategy<Value = View> {
+fn views() -> impl Strategy<Value = View> {
     let place = || prop_oneof![Just(0.0), Just(0.02), Just(-0.5), -0.3..0.3_f64];
     let eye = prop::array::uniform3(place());
     let towards = prop_oneof![

@@ -47,7 +47,7 @@ fn all_settings(volume: &Volume) -> Vec<(String, Settings)> {
         "shadow".into(),
         with(&|s| {
             s.shading = Shading::Shadow;
-            s.light = Light::Directional(glam::Vec3::new(0.3, 0.8, 0.2).normalize());
+            s.light = Light::Directional(glam::Vec3::new(0.3, 0.8, 0.2).normalize_or_zero());
         }),
     ));
     for factor in [0.3, 1.0, 2.5] {
