@@ -112,9 +112,7 @@ impl TexelFormat {
             (Self::R16FloatOf16Bit, StoredVoxels::U16(v)) => {
                 halves(&mut v.iter().map(|&x| f32::from(x) / 65535.0))
             }
-            (Self::Rgba8UnormQuads, StoredVoxels::U8(v)) => {
-                v.chunks(width * height).flat_map(|slice| quads(slice, [width, height])).collect()
-            }
+            (Self::Rgba8UnormQuads, StoredVoxels::U8(v)) => quads(v, [width, height]),
             (_, StoredVoxels::U8(v)) => v.clone(),
             (_, StoredVoxels::U16(v)) => bytemuck::cast_slice(v).to_vec(),
             (_, StoredVoxels::F32(v)) => bytemuck::cast_slice(v).to_vec(),
@@ -240,15 +238,22 @@ impl GpuVolume {
     }
 }
 
-/// Each voxel of a slice with its neighbours along x, y and both, repeated at the faces.
-fn quads(slice: &[u8], [width, height]: [usize; 2]) -> Vec<u8> {
-    let mut quads = Vec::with_capacity(4 * slice.len());
-    for y in 0..height {
-        let row = &slice[y * width..][..width];
-        let next = &slice[(y + 1).min(height - 1) * width..][..width];
-        quads.extend(row.windows(2).zip(next.windows(2)).flat_map(|(a, b)| [a[0], a[1], b[0], b[1]]));
-        let (a, b) = (row[width - 1], next[width - 1]);
-        quads.extend([a, a, b, b]);
+/// Each voxel of whole slices with its neighbours along x, y and both, repeated at the faces.
+fn quads(voxels: &[u8], [width, height]: [usize; 2]) -> Vec<u8> {
+    let mut quads = vec![0; 4 * voxels.len()];
+    let slices = voxels.chunks_exact(width * height).zip(quads.chunks_exact_mut(4 * width * height));
+    for (slice, quads) in slices {
+        for (y, quads) in quads.chunks_exact_mut(4 * width).enumerate() {
+            let row = &slice[y * width..][..width];
+            let next = &slice[(y + 1).min(height - 1) * width..][..width];
+            let (inner, last) = quads.split_at_mut(4 * (width - 1));
+            let pairs = row.windows(2).zip(next.windows(2));
+            for (quad, (near, far)) in inner.chunks_exact_mut(4).zip(pairs) {
+                quad.copy_from_slice(&[near[0], near[1], far[0], far[1]]);
+            }
+            let (near, far) = (row[width - 1], next[width - 1]);
+            last.copy_from_slice(&[near, near, far, far]);
+        }
     }
     quads
 }
