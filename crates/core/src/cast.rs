@@ -3,7 +3,7 @@
 use crate::scene::{GradientMethod, Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading};
 use crate::transfer::Lut;
 use crate::volume::Window;
-use glam::{DAffine3, DVec3, Mat3, Vec3, Vec3A, Vec4};
+use glam::{BVec3, DAffine3, DVec3, Mat3, Vec3, Vec3A, Vec4};
 
 /// Ambient, diffuse and specular weights and the specular exponent of Phong shading.
 pub const PHONG: [f32; 4] = [0.2, 0.7, 0.2, 20.0];
@@ -158,6 +158,16 @@ impl CastParameters {
         let diagonal =
             corners.map(|c| (self.metric_from_texture * c).length()).into_iter().fold(0.0, f32::max);
         (diagonal * self.sampling_factor).ceil() as u32 + 1
+    }
+
+    /// The corners of the visible box, world space, metres.
+    pub fn visible_corners_world(&self) -> [DVec3; 8] {
+        let world_from_texture = self.texture_from_world.inverse();
+        let [lo, hi] = [self.box_lo, self.box_hi].map(|corner| corner.as_dvec3());
+        std::array::from_fn(|i| {
+            let is_high = BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0);
+            world_from_texture.transform_point3(DVec3::select(is_high, hi, lo))
+        })
     }
 }
 

@@ -1,21 +1,23 @@
-//! The cast pass: pipelines of the kernel's variants, and the dispatch of one piece of a picture.
+//! The cast pass: which files make up its kernel, and its pipelines.
 
 use crate::gpu::{Gpu, GpuError};
+use crate::groups::{Bindings, GroupLayouts};
 use crate::leap::Leap;
-use crate::pacer::BAND_ROWS;
 use crate::renderer::Sources;
 use crate::shader::compose;
-use crate::target::Target;
-use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::TexelFormat;
 use std::collections::HashMap;
-use std::num::NonZeroU64;
 use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, DIRECTIONAL_STEPS, SHADOW_SAMPLES};
 use wheatstone_core::scene::{GradientMethod, Mode, Shading};
-use wheatstone_core::transfer::LUT_1D_ENTRIES;
 
-/// Bytes of a `RayState`.
-pub(crate) const RAY_STATE_BYTES: u64 = 48;
+/// Which pixels a cast visits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tiles {
+    /// All of a piece.
+    All,
+    /// Those of tiles that another pass listed.
+    Listed,
+}
 
 /// Which files make up a kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -29,11 +31,12 @@ pub(crate) struct Variant {
     blocks: &'static str,
     magnitude: &'static str,
     resume: &'static str,
+    tiles: &'static str,
 }
 
 impl Variant {
     /// The kernel for some parameters.
-    pub(crate) fn of(parameters: &CastParameters, sources: &Sources<'_>) -> Self {
+    pub(crate) fn of(parameters: &CastParameters, sources: &Sources<'_>, tiles: Tiles) -> Self {
         let (accumulator, is_shaded) = match parameters.mode {
             Mode::Composite => (COMPOSITE, true),
             Mode::Mip => ("lib/accumulate_mip", false),
@@ -73,6 +76,10 @@ impl Variant {
             },
             magnitude: if sources.gradient_map.is_some() { MAGNITUDE_MAP } else { MAGNITUDE_ESTIMATED },
             resume: RESUME_WHOLE,
+            tiles: match tiles {
+                Tiles::All => TILES_ALL,
+                Tiles::Listed => TILES_LISTED,
+            },
         }
     }
 
@@ -102,6 +109,7 @@ impl Variant {
             ("lib/accumulate_xray", skips),
         ];
         let (volume, magnitude, resume) = (VOLUME_FILTERED, MAGNITUDE_ESTIMATED, RESUME_WHOLE);
+        let tiles = TILES_ALL;
         let mut all = Vec::new();
         for (skip, blocks) in skips {
             for gradient in gradients {
@@ -117,6 +125,7 @@ impl Variant {
                             blocks,
                             magnitude,
                             resume,
+                            tiles,
                         });
                     }
                     let (accumulator, classifier) = ("lib/accumulate_first_hit", "lib/classify_isovalue");
@@ -130,6 +139,7 @@ impl Variant {
                         blocks,
                         magnitude,
                         resume,
+                        tiles,
                     });
                 }
             }
@@ -147,6 +157,7 @@ impl Variant {
                     blocks,
                     magnitude,
                     resume,
+                    tiles,
                 });
             }
         }
@@ -159,6 +170,7 @@ impl Variant {
         all.extend(with_map);
         let on_quads = |variant: &Self| Self {
             volume: VOLUME_QUADS,
+            tiles: TILES_LISTED,
             gradient: if variant.gradient == gradients[0] {
                 "lib/gradient_central_quads"
             } else {
@@ -173,7 +185,7 @@ impl Variant {
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 9] {
+    fn choices(&self) -> [(&'static str, &'static str); 10] {
         [
             ("lib/accumulate", self.accumulator),
             ("lib/classify", self.classifier),
@@ -184,6 +196,7 @@ impl Variant {
             ("lib/blocks", self.blocks),
             ("lib/magnitude", self.magnitude),
             ("lib/resume", self.resume),
+            ("lib/tiles", self.tiles),
         ]
     }
 }
@@ -194,6 +207,8 @@ const MAGNITUDE_MAP: &str = "lib/magnitude_map";
 const MAGNITUDE_ESTIMATED: &str = "lib/magnitude_estimated";
 const RESUME_WHOLE: &str = "lib/resume_whole";
 const RESUME_PARTS: &str = "lib/resume_parts";
+const TILES_ALL: &str = "lib/tiles_all";
+const TILES_LISTED: &str = "lib/tiles_listed";
 const SKIP_NONE: &str = "lib/skip_none";
 const SKIP_BLOCKS: &str = "lib/skip_blocks";
 const COMPOSITE: &str = "lib/accumulate_composite";
@@ -242,51 +257,21 @@ pub(crate) fn reads_per_sample(parameters: &CastParameters) -> u32 {
     1 + classifier_reads + shading_samples * (1 + classifier_reads)
 }
 
-/// Layouts of the cast pass and the pipelines built so far.
+/// The pipelines built so far.
 #[derive(Debug)]
 pub(crate) struct CastPass {
-    pub(crate) frame_layout: wgpu::BindGroupLayout,
-    pub(crate) volume_layout: wgpu::BindGroupLayout,
-    pub(crate) target_layout: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
     pipelines: HashMap<Variant, wgpu::ComputePipeline>,
 }
 
 impl CastPass {
-    pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let frame_layout =
-            bind_group_layout(device, "frame", &[uniform::<CastUniform>(), uniform::<ViewUniform>()]);
-        let volume_layout = bind_group_layout(
-            device,
-            "volume",
-            &[
-                texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
-                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                buffer(wgpu::BufferBindingType::Uniform, 16 * LUT_1D_ENTRIES as u64),
-                texture_3d(wgpu::TextureSampleType::Uint),
-                texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
-            ],
-        );
-        let target_layout = bind_group_layout(
-            device,
-            "target",
-            &[
-                storage_texture(wgpu::TextureFormat::Rgba32Float),
-                storage_texture(wgpu::TextureFormat::Rgba32Float),
-                buffer(wgpu::BufferBindingType::Storage { read_only: false }, RAY_STATE_BYTES),
-            ],
-        );
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("cast"),
-            bind_group_layouts: &[Some(&frame_layout), Some(&volume_layout), Some(&target_layout)],
+            bind_group_layouts: &[Some(&groups.frame), Some(&groups.volume), Some(&groups.target)],
             immediate_size: 0,
         });
-        Self { frame_layout, volume_layout, target_layout, layout, pipelines: HashMap::new() }
+        Self { layout, pipelines: HashMap::new() }
     }
 
     /// The pipeline of a variant, built when first asked for.
@@ -329,73 +314,29 @@ fn build_pipeline(
     }))
 }
 
-/// Bind groups of one dispatch.
-pub(crate) struct Bindings<'a> {
-    pub(crate) frame: &'a wgpu::BindGroup,
-    pub(crate) volume: &'a wgpu::BindGroup,
-    pub(crate) target: &'a wgpu::BindGroup,
-}
-
-/// Submits one piece of `rows` rows.
+/// Encodes the cast of a piece of whole tiles.
 pub(crate) fn dispatch(
-    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::ComputePipeline,
     bindings: &Bindings<'_>,
-    target: &Target,
-    rows: u32,
+    workgroups: Workgroups<'_>,
 ) {
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, bindings.frame, &[]);
-        pass.set_bind_group(1, bindings.volume, &[]);
-        pass.set_bind_group(2, bindings.target, &[]);
-        pass.dispatch_workgroups(target.size()[0].div_ceil(BAND_ROWS), rows.div_ceil(BAND_ROWS), 1);
-    }
-    gpu.queue.submit([encoder.finish()]);
-}
-
-fn bind_group_layout(
-    device: &wgpu::Device,
-    label: &str,
-    types: &[wgpu::BindingType],
-) -> wgpu::BindGroupLayout {
-    let entries: Vec<_> = (0..)
-        .zip(types)
-        .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        })
-        .collect();
-    device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
-}
-
-fn uniform<T>() -> wgpu::BindingType {
-    buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
-}
-
-fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {
-    wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: NonZeroU64::new(smallest) }
-}
-
-fn texture_3d(sample_type: wgpu::TextureSampleType) -> wgpu::BindingType {
-    wgpu::BindingType::Texture {
-        sample_type,
-        view_dimension: wgpu::TextureViewDimension::D3,
-        multisampled: false,
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(pipeline);
+    bindings.set(&mut pass);
+    match workgroups {
+        Workgroups::Counted([x, y]) => pass.dispatch_workgroups(x, y, 1),
+        Workgroups::Listed(groups) => pass.dispatch_workgroups_indirect(groups, 0),
     }
 }
 
-fn storage_texture(format: wgpu::TextureFormat) -> wgpu::BindingType {
-    wgpu::BindingType::StorageTexture {
-        access: wgpu::StorageTextureAccess::WriteOnly,
-        format,
-        view_dimension: wgpu::TextureViewDimension::D2,
-    }
+/// Workgroups of a cast.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Workgroups<'a> {
+    /// So many along x and y.
+    Counted([u32; 2]),
+    /// As many as a buffer says.
+    Listed(&'a wgpu::Buffer),
 }
 
 #[cfg(test)]
@@ -434,7 +375,7 @@ mod tests {
     #[test]
     fn every_pipeline_builds_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let pass = CastPass::new(&device);
+        let pass = CastPass::new(&device, &GroupLayouts::new(&device));
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         for variant in Variant::all() {
             build_pipeline(&device, &pass.layout, variant).unwrap();

@@ -6,6 +6,7 @@
 mod cast_pass;
 pub mod gpu;
 mod gradient_map;
+mod groups;
 mod kernel;
 mod layers;
 mod leap;
@@ -15,6 +16,7 @@ mod renderer;
 pub mod shader;
 pub mod skip;
 mod target;
+mod tile_pass;
 mod uniforms;
 mod volume;
 

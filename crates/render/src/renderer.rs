@@ -1,11 +1,13 @@
 //! The renderer: what is kept between frames, and the one loop over views.
 
-use crate::cast_pass::{self, Bindings, CastPass, RAY_STATE_BYTES, Variant};
+use crate::cast_pass::{self, CastPass, Tiles, Variant, Workgroups};
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
+use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
 use crate::target::Target;
+use crate::tile_pass::{self, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
 use half::f16;
@@ -14,7 +16,7 @@ use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
-use wheatstone_core::view::View;
+use wheatstone_core::view::{PixelRect, View};
 
 /// Most bytes of ray states between dispatches.
 const MOST_STATE_BYTES: u64 = 64 << 20;
@@ -22,7 +24,9 @@ const MOST_STATE_BYTES: u64 = 64 << 20;
 /// Pipelines and pacing, made once per device.
 #[derive(Debug)]
 pub struct Renderer {
+    groups: GroupLayouts,
     cast_pass: CastPass,
+    tile_pass: TilePass,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
@@ -54,6 +58,7 @@ impl<'a> Sources<'a> {
 pub struct Prepared {
     parameters: CastParameters,
     variant: Variant,
+    lists_tiles: bool,
     iterations_per_sample: u32,
     view_uniform: wgpu::Buffer,
     frame: wgpu::BindGroup,
@@ -66,7 +71,9 @@ impl Renderer {
     /// # Errors
     /// A device that refuses or is lost.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let cast_pass = CastPass::new(&gpu.device);
+        let groups = GroupLayouts::new(&gpu.device);
+        let cast_pass = CastPass::new(&gpu.device, &groups);
+        let tile_pass = TilePass::new(&gpu.device, &groups)?;
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("trilinear"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -87,7 +94,7 @@ impl Renderer {
             })
             .create_view(&wgpu::TextureViewDescriptor::default());
         gpu.check()?;
-        Ok(Self { cast_pass, sampler, no_map, pacer: Pacer::new() })
+        Ok(Self { groups, cast_pass, tile_pass, sampler, no_map, pacer: Pacer::new() })
     }
 
     /// Prepares a volume to be cast with some parameters.
@@ -100,7 +107,9 @@ impl Renderer {
         sources: &Sources<'_>,
         parameters: CastParameters,
     ) -> Result<Prepared, GpuError> {
-        let variant = Variant::of(&parameters, sources);
+        let lists_tiles = tile_pass::pays(gpu, &parameters, &sources.leap);
+        let tiles = if lists_tiles { Tiles::Listed } else { Tiles::All };
+        let variant = Variant::of(&parameters, sources, tiles);
         self.cast_pass.pipeline(gpu, variant)?;
         let Sources { volume, gradient_map, leap } = sources;
         let iterations_per_sample = cast_pass::iterations_per_sample(&parameters, leap);
@@ -134,15 +143,15 @@ impl Renderer {
             (vec![[0; 4]; LUT_1D_ENTRIES], lut_texture(gpu, [lut.width(), lut.height()], entries))
         };
         let lut_1d = init_buffer(gpu, "lut", bytemuck::cast_slice(&lut_1d), wgpu::BufferUsages::UNIFORM);
-        let frame = bind_group(
-            gpu,
-            &self.cast_pass.frame_layout,
+        let frame = bind(
+            &gpu.device,
+            &self.groups.frame,
             &[cast_uniform.as_entire_binding(), view_uniform.as_entire_binding()],
         );
         let leap_texture = leap.texture();
-        let volume = bind_group(
-            gpu,
-            &self.cast_pass.volume_layout,
+        let volume = bind(
+            &gpu.device,
+            &self.groups.volume,
             &[
                 wgpu::BindingResource::TextureView(&volume.texture),
                 wgpu::BindingResource::Sampler(&self.sampler),
@@ -153,7 +162,7 @@ impl Renderer {
             ],
         );
         gpu.check()?;
-        Ok(Prepared { parameters, variant, iterations_per_sample, view_uniform, frame, volume })
+        Ok(Prepared { parameters, variant, lists_tiles, iterations_per_sample, view_uniform, frame, volume })
     }
 
     /// Casts each view into its target and waits until all are done.
@@ -212,13 +221,15 @@ impl Renderer {
         });
         let color = target.color.create_view(&wgpu::TextureViewDescriptor::default());
         let depth = target.depth.create_view(&wgpu::TextureViewDescriptor::default());
-        let target_group = bind_group(
-            gpu,
-            &self.cast_pass.target_layout,
+        let list = self.tile_pass.list(&gpu.device, if prepared.lists_tiles { view.size } else { [1, 1] });
+        let target_group = bind(
+            &gpu.device,
+            &self.groups.target,
             &[
                 wgpu::BindingResource::TextureView(&color),
                 wgpu::BindingResource::TextureView(&depth),
                 states.as_entire_binding(),
+                list.tiles.as_entire_binding(),
             ],
         );
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target_group };
@@ -226,24 +237,45 @@ impl Renderer {
         let reads = cast_pass::reads_per_sample(parameters);
         let bands = band_samples(parameters, view);
         let bands_with_states = if may_be_split { state_rows / BAND_ROWS } else { u32::MAX };
+        let covered = PixelRect::around(view, parameters.visible_corners_world());
+        let bands_covered = covered.rows.start / BAND_ROWS..covered.rows.end.div_ceil(BAND_ROWS);
+        let columns_covered = covered.columns.start / BAND_ROWS..covered.columns.end.div_ceil(BAND_ROWS);
         let mut piece = ViewUniform::new(parameters, view);
-        while piece.first_row < height {
+        piece.first_row = bands_covered.start * BAND_ROWS;
+        piece.first_column = columns_covered.start * BAND_ROWS;
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        target.clear(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let last_row = height.min(bands_covered.end * BAND_ROWS);
+        while piece.first_row < last_row {
             let budget = self.pacer.budget(reads);
-            let left = &bands[(piece.first_row / BAND_ROWS) as usize..];
+            let left = &bands[(piece.first_row / BAND_ROWS) as usize..bands_covered.end as usize];
             let left = &left[..left.len().min(bands_with_states as usize)];
             let (band_count, samples) = fitting_bands(left, budget);
             let share_of_ray = (budget / samples).min(1.0);
-            piece.row_count = (band_count * BAND_ROWS).min(height - piece.first_row);
+            piece.row_count = (band_count * BAND_ROWS).min(last_row - piece.first_row);
             piece.sample_limit = sample_limit(most_samples, iterations, share_of_ray);
             piece.band_stride = if gpu.description().is_software { spreading_stride(band_count) } else { 1 };
             piece.first_sample = 0;
             let is_whole = piece.sample_limit == u32::MAX;
             let variant = if is_whole { prepared.variant } else { prepared.variant.in_parts() };
             let pipeline = self.cast_pass.pipeline(gpu, variant)?;
+            let squares = [columns_covered.len() as u32, band_count];
             while piece.first_sample < most_samples {
                 gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
+                let mut encoder =
+                    gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                if prepared.lists_tiles {
+                    if piece.first_sample == 0 {
+                        list.clear(&gpu.queue);
+                        self.tile_pass.dispatch(&mut encoder, &list, &bindings, squares);
+                    }
+                    cast_pass::dispatch(&mut encoder, &pipeline, &bindings, Workgroups::Listed(&list.groups));
+                } else {
+                    cast_pass::dispatch(&mut encoder, &pipeline, &bindings, Workgroups::Counted(squares));
+                }
                 let start = Instant::now();
-                cast_pass::dispatch(gpu, &pipeline, &bindings, target, piece.row_count);
+                gpu.queue.submit([encoder.finish()]);
                 gpu.wait()?;
                 let share = (f64::from(piece.sample_limit) / f64::from(most_samples)).min(1.0);
                 self.pacer.learn(samples * share, start.elapsed());
@@ -300,16 +332,4 @@ fn shortest_run(gpu: &Gpu) -> f32 {
 
 fn init_buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-}
-
-fn bind_group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    resources: &[wgpu::BindingResource<'_>],
-) -> wgpu::BindGroup {
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }

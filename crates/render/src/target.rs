@@ -4,16 +4,13 @@ use crate::gpu::{Gpu, GpuError};
 use wheatstone_core::image::Image;
 use wheatstone_core::reference::{Cast, Reads};
 
-/// The largest f32: `NOTHING_HIT` of `lib/ray_state.wgsl`.
-const NOTHING_HIT: f32 = f32::MAX;
-
 /// Textures of one picture on the device.
 #[derive(Debug)]
 pub struct Target {
     size: [u32; 2],
     /// RGBA, premultiplied, 32-bit float.
     pub(crate) color: wgpu::Texture,
-    /// Depth of the first hit in metres, samples taken, reads of the skip map; 32-bit float.
+    /// Depth of the first hit in metres, samples taken, reads of the skip map, 1 where something was hit; 32-bit float.
     pub(crate) depth: wgpu::Texture,
 }
 
@@ -37,6 +34,7 @@ impl Target {
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage: wgpu::TextureUsages::STORAGE_BINDING
+                    | wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
@@ -53,6 +51,28 @@ impl Target {
         self.size
     }
 
+    /// Encodes the blank picture: nothing hit, no samples.
+    pub(crate) fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
+        let views = [&self.color, &self.depth]
+            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let attachments = views.each_ref().map(|view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })
+        });
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("blank picture"),
+            color_attachments: &attachments,
+            ..Default::default()
+        });
+    }
+
     /// Reads the picture back.
     ///
     /// # Errors
@@ -62,7 +82,7 @@ impl Target {
         let depth_and_counts: Vec<[f32; 4]> = self.read_texture(gpu, &self.depth)?;
         let depth_m = depth_and_counts
             .iter()
-            .map(|&[depth_m, ..]| if depth_m == NOTHING_HIT { f32::INFINITY } else { depth_m })
+            .map(|&[depth_m, .., is_hit]| if is_hit == 0.0 { f32::INFINITY } else { depth_m })
             .collect();
         let reads = depth_and_counts
             .iter()

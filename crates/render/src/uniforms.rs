@@ -64,7 +64,7 @@ pub(crate) struct ViewUniform {
     pub(crate) first_sample: u32,
     pub(crate) sample_limit: u32,
     pub(crate) band_stride: u32,
-    pub(crate) padding: u32,
+    pub(crate) first_column: u32,
 }
 
 impl CastUniform {
@@ -135,7 +135,7 @@ impl ViewUniform {
             first_sample: 0,
             sample_limit: u32::MAX,
             band_stride: 1,
-            padding: 0,
+            first_column: 0,
         }
     }
 }
@@ -219,6 +219,7 @@ mod tests {
                 first_sample,
                 sample_limit,
                 band_stride,
+                first_column,
             ]
         );
     }

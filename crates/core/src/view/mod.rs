@@ -2,12 +2,14 @@
 
 mod frustum;
 mod orbit;
+mod pixel_rect;
 mod placement;
 mod ray_field;
 mod rig;
 
 pub use frustum::{Frustum, FrustumError, OrthographicBox, Projection};
 pub use orbit::Orbit;
+pub use pixel_rect::PixelRect;
 pub use placement::{AnatomicalDirection, world_from_patient};
 pub use ray_field::RayField;
 pub use rig::Rig;

@@ -8,6 +8,8 @@ import package::lib::volume::{value_at};
 // An empty block has no surface, but may be all inside.
 const EMPTY_IS_CLEAR = false;
 
+const CLASSIFIER_IS_DEAR = false;
+
 const CLASSIFIER_HAS_GRADIENT = true;
 
 // The logarithm that stands for an opacity of 1.

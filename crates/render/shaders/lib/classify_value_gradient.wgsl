@@ -9,6 +9,8 @@ import package::lib::volume::{value_at};
 // An empty block lets all light through.
 const EMPTY_IS_CLEAR = true;
 
+const CLASSIFIER_IS_DEAR = true;
+
 const CLASSIFIER_HAS_GRADIENT = HAS_GRADIENT;
 
 // Where on the ray, counted in steps from a sample's middle, the value that classifies it is taken.

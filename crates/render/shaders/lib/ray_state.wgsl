@@ -16,7 +16,7 @@ struct RayState {
     is_finished: u32,
 }
 
-// Depth where nothing was hit: the largest f32, read back as infinity.
+// Depth where nothing was hit: the largest f32.
 const NOTHING_HIT: f32 = 3.4028234e38;
 
 struct Pixel {

@@ -31,6 +31,22 @@ struct View {
     sample_limit: u32,
     // Step between the bands of rows that neighbouring workgroups take; has no common factor with the band count.
     band_stride: u32,
+    // First column of the piece that is cast.
+    first_column: u32,
 }
 
+// Rows of a band: the side of the square of pixels that a workgroup takes; `BAND_ROWS` of the host.
+const BAND_ROWS: u32 = 8u;
+
 @group(0) @binding(1) var<uniform> view: View;
+
+// The first pixel of the 8 x 8 that a workgroup takes.
+fn first_pixel_of_group(group: vec3u) -> vec2u {
+    let band_count = (view.row_count + BAND_ROWS - 1u) / BAND_ROWS;
+    let band = (group.y * view.band_stride) % band_count;
+    return vec2u(view.first_column, view.first_row) + vec2u(group.x, band) * BAND_ROWS;
+}
+
+fn is_outside_piece(pixel: vec2u) -> bool {
+    return pixel.x >= view.width || pixel.y >= view.first_row + view.row_count;
+}

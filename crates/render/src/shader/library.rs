@@ -64,6 +64,10 @@ files! {
     "lib/skip_blocks",
     "lib/skip_none",
     "lib/sweep",
+    "lib/target",
+    "lib/tile_list",
+    "lib/tiles_all",
+    "lib/tiles_listed",
     "lib/value_sum",
     "lib/view",
     "lib/volume_filtered",
@@ -79,4 +83,5 @@ files! {
     "skip/sweep_columns",
     "skip/sweep_rows",
     "skip/zigzag",
+    "tiles",
 }

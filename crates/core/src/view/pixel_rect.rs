@@ -1,0 +1,120 @@
+//! The part of a picture that a body can cover.
+
+use super::{Projection, View};
+use glam::{DVec2, DVec3};
+use std::ops::Range;
+
+/// Pixels added on each side, for rays that rounding moves.
+const MARGIN: f64 = 1.0;
+
+/// A rectangle of pixels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PixelRect {
+    /// From the left.
+    pub columns: Range<u32>,
+    /// From the top.
+    pub rows: Range<u32>,
+}
+
+impl PixelRect {
+    /// The pixels whose rays can meet the convex hull of world points; all of them if one is not in front of the eye.
+    pub fn around(view: &View, world_points: impl IntoIterator<Item = DVec3>) -> Self {
+        let [width, height] = view.size;
+        let pixels: Option<Vec<DVec2>> =
+            world_points.into_iter().map(|point| view.pixel_position(point)).collect();
+        let Some(pixels) = pixels else {
+            return Self { columns: 0..width, rows: 0..height };
+        };
+        let range = |along: fn(&DVec2) -> f64, size: u32| {
+            let lowest = pixels.iter().map(along).fold(f64::INFINITY, f64::min) - MARGIN;
+            let highest = pixels.iter().map(along).fold(f64::NEG_INFINITY, f64::max) + MARGIN;
+            let within = |at: f64| at.clamp(0.0, f64::from(size)) as u32;
+            within(lowest.floor())..within(highest.ceil())
+        };
+        Self { columns: range(|at| at.x, width), rows: range(|at| at.y, height) }
+    }
+}
+
+impl View {
+    /// Where a world point is seen, in pixels from the top left; nowhere if it is not in front of the eye.
+    pub fn pixel_position(&self, world: DVec3) -> Option<DVec2> {
+        let at = self.view_from_world.transform_point3(world);
+        let of_picture = match self.projection {
+            Projection::Perspective(f) => {
+                let depth_m = -at.z;
+                if depth_m <= f.near_m.max(f64::MIN_POSITIVE) {
+                    return None;
+                }
+                let (x, y) = (at.x / depth_m, at.y / depth_m);
+                DVec2::new((x - f.left) / (f.right - f.left), (y - f.up) / (f.down - f.up))
+            }
+            Projection::Orthographic(o) => {
+                DVec2::new((at.x - o.left_m) / (o.right_m - o.left_m), (at.y - o.up_m) / (o.down_m - o.up_m))
+            }
+        };
+        Some(of_picture * DVec2::from(self.size.map(f64::from)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::{Frustum, Orbit, OrthographicBox, RayField};
+    use glam::DAffine3;
+
+    const SIZE: [u32; 2] = [90, 60];
+
+    fn cube(half: f64) -> impl Iterator<Item = DVec3> {
+        (0..8).map(move |i| DVec3::from([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -half } else { half })))
+    }
+
+    fn views() -> [View; 2] {
+        let frustum = Frustum::from_fov_y(0.9, SIZE).unwrap().sheared(0.2);
+        let parallel = OrthographicBox::from_height(2.0, SIZE).unwrap();
+        [Projection::Perspective(frustum), Projection::Orthographic(parallel)]
+            .map(|projection| Orbit { azimuth_rad: 0.6, ..Default::default() }.view(projection, SIZE))
+    }
+
+    #[test]
+    fn a_point_is_on_the_ray_of_its_pixel() {
+        let point = DVec3::new(0.1, -0.2, 0.05);
+        for view in views() {
+            let at = view.pixel_position(point).unwrap();
+            let (origin, direction) = RayField::new(&view, DAffine3::IDENTITY).at(at.x, at.y);
+            let offset = (point - origin).cross(direction.normalize_or_zero());
+            assert!(offset.length() < 1e-12, "{at} {offset}");
+        }
+    }
+
+    #[test]
+    fn every_ray_that_meets_a_cube_is_in_its_rectangle_and_few_others_are() {
+        const HALF: f64 = 0.2;
+        for view in views() {
+            let rect = PixelRect::around(&view, cube(HALF));
+            let rays = RayField::new(&view, DAffine3::IDENTITY);
+            let mut hit = 0;
+            for (x, y) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))) {
+                let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let sides = [(-HALF - origin) / direction, (HALF - origin) / direction];
+                let enter = sides[0].min(sides[1]).max_element();
+                let leave = sides[0].max(sides[1]).min_element();
+                if enter <= leave {
+                    hit += 1;
+                    assert!(rect.columns.contains(&x) && rect.rows.contains(&y), "{x} {y} {rect:?}");
+                }
+            }
+            assert!(hit > 0 && rect.columns.len() * rect.rows.len() < 2 * hit, "{hit} {rect:?}");
+        }
+    }
+
+    #[test]
+    fn a_body_around_the_eye_covers_everything_and_one_beside_the_picture_nothing() {
+        for view in views() {
+            let all = PixelRect { columns: 0..SIZE[0], rows: 0..SIZE[1] };
+            assert_eq!(PixelRect::around(&view, cube(100.0)), all);
+            let right = view.view_from_world.inverse().transform_vector3(DVec3::X);
+            let beside = PixelRect::around(&view, cube(0.1).map(|point| point + 50.0 * right));
+            assert!(beside.columns.is_empty(), "{beside:?}");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The bind groups that the passes of a cast share.
+
+use crate::uniforms::{CastUniform, ViewUniform};
+use std::num::NonZeroU64;
+use wheatstone_core::transfer::LUT_1D_ENTRIES;
+
+/// Bytes of a `RayState`.
+pub(crate) const RAY_STATE_BYTES: u64 = 48;
+
+/// Layouts of the groups 0 to 2.
+#[derive(Debug)]
+pub(crate) struct GroupLayouts {
+    /// Parameters and view.
+    pub(crate) frame: wgpu::BindGroupLayout,
+    /// Volume, tables and maps.
+    pub(crate) volume: wgpu::BindGroupLayout,
+    /// Picture, rays under way and listed tiles.
+    pub(crate) target: wgpu::BindGroupLayout,
+}
+
+impl GroupLayouts {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let texture_2d = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let volume = [
+            texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            texture_2d,
+            buffer(wgpu::BufferBindingType::Uniform, 16 * LUT_1D_ENTRIES as u64),
+            texture_3d(wgpu::TextureSampleType::Uint),
+            texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
+        ];
+        let target = [
+            storage_texture(wgpu::TextureFormat::Rgba32Float),
+            storage_texture(wgpu::TextureFormat::Rgba32Float),
+            storage_buffer(RAY_STATE_BYTES),
+            storage_buffer(8),
+        ];
+        Self {
+            frame: layout(device, "frame", &[uniform::<CastUniform>(), uniform::<ViewUniform>()]),
+            volume: layout(device, "volume", &volume),
+            target: layout(device, "target", &target),
+        }
+    }
+}
+
+/// Groups 0 to 2 of one dispatch.
+pub(crate) struct Bindings<'a> {
+    pub(crate) frame: &'a wgpu::BindGroup,
+    pub(crate) volume: &'a wgpu::BindGroup,
+    pub(crate) target: &'a wgpu::BindGroup,
+}
+
+impl Bindings<'_> {
+    pub(crate) fn set(&self, pass: &mut wgpu::ComputePass<'_>) {
+        for (index, group) in (0..).zip([self.frame, self.volume, self.target]) {
+            pass.set_bind_group(index, group, &[]);
+        }
+    }
+}
+
+/// A layout of resources at the bindings 0, 1, 2, …
+pub(crate) fn layout(
+    device: &wgpu::Device,
+    label: &str,
+    types: &[wgpu::BindingType],
+) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect();
+    device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+/// Resources at the bindings 0, 1, 2, …
+pub(crate) fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+/// A buffer of at least so many bytes that a shader reads and writes.
+pub(crate) fn storage_buffer(smallest: u64) -> wgpu::BindingType {
+    buffer(wgpu::BufferBindingType::Storage { read_only: false }, smallest)
+}
+
+fn uniform<T>() -> wgpu::BindingType {
+    buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
+}
+
+fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: NonZeroU64::new(smallest) }
+}
+
+fn texture_3d(sample_type: wgpu::TextureSampleType) -> wgpu::BindingType {
+    wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D3,
+        multisampled: false,
+    }
+}
+
+fn storage_texture(format: wgpu::TextureFormat) -> wgpu::BindingType {
+    wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    }
+}

@@ -1,0 +1,149 @@
+//! The tile pass: lists the tiles of a picture of which some ray may meet something.
+//!
+//! Software Vulkan runs the whole of a kernel for every eight rays in lockstep, also where all of them miss. A kernel that
+//! only finds that out is far cheaper; the cast is then sent to the others alone.
+
+use crate::gpu::{Gpu, GpuError};
+use crate::groups::{Bindings, GroupLayouts, bind, layout, storage_buffer};
+use crate::leap::Leap;
+use crate::shader::compose;
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::scene::Mode;
+
+/// Pixels of a tile along x and y: `TILE` of `lib/tile_list.wgsl`.
+const TILE: [u32; 2] = [4, 2];
+
+/// Workgroups of a cast along x: `GROUPS_PER_ROW` of `lib/tile_list.wgsl`.
+const GROUPS_PER_ROW: u32 = 256;
+
+/// The files of the kernel's slots.
+const CHOICES: [(&str, &str); 2] =
+    [("lib/skip", "lib/skip_blocks"), ("lib/blocks", "lib/blocks_by_distance")];
+
+/// Whether to list tiles for a cast: on software Vulkan, where rays that meet no occupied block leave blank pixels.
+pub(crate) fn pays(gpu: &Gpu, parameters: &CastParameters, leap: &Leap<'_>) -> bool {
+    let leaves_blank = matches!(parameters.mode, Mode::Composite | Mode::Isosurface { .. });
+    gpu.description().is_software && leaves_blank && matches!(leap, Leap::EmptyBlocks(_))
+}
+
+/// The pipeline.
+#[derive(Debug)]
+pub(crate) struct TilePass {
+    list_layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl TilePass {
+    /// Builds the pipeline; what the driver says against it comes with the next [`Gpu::check`].
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] for files that make no module.
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
+        let list_layout = layout(device, "tile list", &[storage_buffer(12), storage_buffer(4)]);
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("tiles"),
+            bind_group_layouts: &[
+                Some(&groups.frame),
+                Some(&groups.volume),
+                Some(&groups.target),
+                Some(&list_layout),
+            ],
+            immediate_size: 0,
+        });
+        let source =
+            compose("tiles", &CHOICES).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("tiles"),
+            source: wgpu::ShaderSource::Wgsl(source.text.into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("tiles"),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some("list_tiles"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Ok(Self { list_layout, pipeline })
+    }
+
+    /// The list of a picture; empty.
+    pub(crate) fn list(&self, device: &wgpu::Device, [width, height]: [u32; 2]) -> TileList {
+        let tiles = u64::from(width.div_ceil(TILE[0])) * u64::from(height.div_ceil(TILE[1]));
+        let buffer = |label, words: u64, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: 4 * words,
+                usage: wgpu::BufferUsages::STORAGE | usage,
+                mapped_at_creation: false,
+            })
+        };
+        let copied_to = wgpu::BufferUsages::COPY_DST;
+        let groups = buffer("workgroups", 3, copied_to | wgpu::BufferUsages::INDIRECT);
+        let is_listed = buffer("listed", tiles, wgpu::BufferUsages::empty());
+        let tiles = buffer("tiles", 1 + tiles, copied_to);
+        let group =
+            bind(device, &self.list_layout, &[groups.as_entire_binding(), is_listed.as_entire_binding()]);
+        TileList { groups, tiles, group }
+    }
+
+    /// Encodes the listing of a piece of squares of `BAND_ROWS` pixels along x and y.
+    pub(crate) fn dispatch(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        list: &TileList,
+        bindings: &Bindings<'_>,
+        [squares_x, squares_y]: [u32; 2],
+    ) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        bindings.set(&mut pass);
+        pass.set_bind_group(3, &list.group, &[]);
+        pass.dispatch_workgroups(squares_x, squares_y, 1);
+    }
+}
+
+/// Tiles of one picture. A tile is listed once: pieces of a picture are of whole tiles.
+pub(crate) struct TileList {
+    /// Workgroups of the cast along x, y and z.
+    pub(crate) groups: wgpu::Buffer,
+    /// How many there are, and their numbers.
+    pub(crate) tiles: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl TileList {
+    /// Empties the list, before the next piece is listed.
+    pub(crate) fn clear(&self, queue: &wgpu::Queue) {
+        queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&[GROUPS_PER_ROW, 0, 1]));
+        queue.write_buffer(&self.tiles, 0, bytemuck::bytes_of(&0_u32));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pacer::BAND_ROWS;
+
+    #[test]
+    fn the_pipeline_builds_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        TilePass::new(&device, &GroupLayouts::new(&device)).unwrap();
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+
+    #[test]
+    fn constants_are_those_of_the_kernel() {
+        let text = compose("tiles", &CHOICES).unwrap().text;
+        for line in [
+            format!("const TILE = vec2u({}u, {}u);", TILE[0], TILE[1]),
+            format!("const GROUPS_PER_ROW: u32 = {GROUPS_PER_ROW}u;"),
+            format!("const BAND_ROWS: u32 = {BAND_ROWS}u;"),
+        ] {
+            assert!(text.contains(&line), "{line}");
+        }
+    }
+}
