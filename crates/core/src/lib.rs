@@ -12,6 +12,7 @@ pub mod phantom;
 pub mod reference;
 pub mod scene;
 pub mod skip;
+pub mod stereo;
 pub mod transfer;
 pub mod view;
 pub mod volume;
