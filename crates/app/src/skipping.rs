@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::spec;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
+use wheatstone_core::cast::{CastParameters, Classifier};
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::skip::{BlockSize, Pace, Skip, SkipPlan, SkipRequest};
 use wheatstone_core::volume::StorageKind;
@@ -21,9 +22,9 @@ pub(crate) struct SkipArgs {
     #[arg(long, value_name = "N", value_parser = spec::block_size, allow_negative_numbers = true)]
     block_size: Option<BlockSize>,
 
-    /// Bits of the gradient magnitudes that two-dimensional transfer functions look up on a GPU: faster, at the price of a
-    /// second volume, and a little softer; none estimates them at each sample, as the CPU renderer does.
-    #[arg(long, value_enum, default_value_t = GradientMapName::None)]
+    /// Bits of the gradient magnitudes that two-dimensional transfer functions look up in a map of the volume, which takes
+    /// as much memory as a second volume; none estimates them around each sample instead: slower, and a little sharper.
+    #[arg(long, value_enum, default_value_t = GradientMapName::Auto)]
     gradient_map: GradientMapName,
 }
 
@@ -45,6 +46,8 @@ pub(crate) enum SkipName {
 /// Precision of gradient magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum GradientMapName {
+    /// 8 bits for a volume held in 8, else 16.
+    Auto,
     /// 8 bits.
     #[value(name = "8")]
     Eight,
@@ -60,23 +63,31 @@ pub(crate) enum GradientMapName {
 pub(crate) struct Skipping {
     /// What rays leap by.
     pub(crate) request: SkipRequest,
-    /// Precision of the gradient map of two-dimensional transfer functions, if there is to be one.
-    pub(crate) gradient_map: Option<GradientDepth>,
+    /// Precision of the gradient map of two-dimensional transfer functions.
+    pub(crate) gradient_map: GradientMapName,
 }
 
 impl Skipping {
     /// By what suits volume and transfer function.
-    pub(crate) const AUTO: Self =
-        Self::by(SkipRequest { skip: Skip::Auto, block_size: None }, GradientMapName::None);
+    pub(crate) const AUTO: Self = Self {
+        request: SkipRequest { skip: Skip::Auto, block_size: None },
+        gradient_map: GradientMapName::Auto,
+    };
 
-    /// As asked.
-    pub(crate) const fn by(request: SkipRequest, gradient_map: GradientMapName) -> Self {
-        let gradient_map = match gradient_map {
-            GradientMapName::Eight => Some(GradientDepth::Bits8),
-            GradientMapName::Sixteen => Some(GradientDepth::Bits16),
-            GradientMapName::None => None,
+    /// Precision of the gradient map that some settings look magnitudes up in, over a volume held in a precision; nothing if
+    /// they look none up.
+    pub(crate) fn gradient_depth(
+        &self,
+        parameters: &CastParameters,
+        storage: StorageKind,
+    ) -> Option<GradientDepth> {
+        let depth = match self.gradient_map {
+            GradientMapName::Auto if storage == StorageKind::U8 => GradientDepth::Bits8,
+            GradientMapName::Eight => GradientDepth::Bits8,
+            GradientMapName::Auto | GradientMapName::Sixteen => GradientDepth::Bits16,
+            GradientMapName::None => return None,
         };
-        Self { request, gradient_map }
+        (parameters.classifier == Classifier::ValueGradient).then_some(depth)
     }
 }
 
@@ -93,7 +104,10 @@ impl SkipArgs {
         if skip == Skip::None && self.block_size.is_some() {
             return Err(Failure::input("--block-size needs a --skip other than none"));
         }
-        Ok(Skipping::by(SkipRequest { skip, block_size: self.block_size }, self.gradient_map))
+        Ok(Skipping {
+            request: SkipRequest { skip, block_size: self.block_size },
+            gradient_map: self.gradient_map,
+        })
     }
 }
 

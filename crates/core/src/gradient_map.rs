@@ -26,6 +26,14 @@ pub enum GradientDepth {
 }
 
 impl GradientDepth {
+    /// Bits of a code.
+    pub fn bits(self) -> u32 {
+        match self {
+            Self::Bits8 => u8::BITS,
+            Self::Bits16 => u16::BITS,
+        }
+    }
+
     /// The code of the largest magnitude.
     pub fn largest_code(self) -> u16 {
         match self {
@@ -92,11 +100,7 @@ impl GradientMap {
 
     /// Bytes that the codes take.
     pub fn byte_size(&self) -> usize {
-        self.dims.iter().product::<usize>()
-            * match self.depth {
-                GradientDepth::Bits8 => size_of::<u8>(),
-                GradientDepth::Bits16 => size_of::<u16>(),
-            }
+        self.dims.iter().product::<usize>() * (self.depth.bits() / u8::BITS) as usize
     }
 }
 

@@ -8,7 +8,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::metrics::compare;
 use wheatstone_core::phantom::Phantom;
-use wheatstone_core::reference::Caster;
+use wheatstone_core::reference::{Aids, Caster};
 use wheatstone_core::scene::{Placement, Settings};
 use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::{AnatomicalDirection, Frustum, Orbit, Projection, world_from_patient};
@@ -66,7 +66,9 @@ fn picture(volume: &Volume) -> RgbImage {
     let orbit = Orbit { azimuth_rad: 0.6, elevation_rad: 0.4, ..Orbit::default() };
     let view = orbit.view(Projection::Perspective(frustum), size);
     let parameters = CastParameters::new(&settings, &placement);
-    Caster::new(volume).cast_exactly(&parameters, None, &[view])[0].image.over_background([0.0; 3])
+    Caster::new(volume).cast_exactly(&parameters, &Aids::default(), &[view])[0]
+        .image
+        .over_background([0.0; 3])
 }
 
 #[test]

@@ -96,6 +96,11 @@ impl GpuGradientMap {
         self.dims
     }
 
+    /// Precision of the magnitudes.
+    pub fn depth(&self) -> GradientDepth {
+        self.depth
+    }
+
     /// How the magnitudes are held.
     pub fn format(&self) -> TexelFormat {
         self.format

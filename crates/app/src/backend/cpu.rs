@@ -1,12 +1,15 @@
 //! A volume on the CPU.
 
-use super::{Leaping, Shot, median_ms};
+use super::{GradientMapSize, Leaping, Shot, median_ms};
 use crate::skipping::Skipping;
 use std::convert::Infallible;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::reference::{Cast, Caster};
-use wheatstone_core::skip::{BlockRanges, Occupancy, Pace, SkipMap, SkipPlan, Visibility};
+use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
+use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap, Leap};
+use wheatstone_core::scene::GradientMethod;
+use wheatstone_core::skip::{BlockRanges, BlockSize, Occupancy, Pace, SkipMap, SkipPlan, Visibility};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Encoding, StorageKind, Volume};
 
@@ -15,6 +18,7 @@ pub(crate) struct CpuEngine<'v> {
     volume: &'v Volume,
     storage: StorageKind,
     caster: Caster,
+    gradients: Option<Rc<Gradients>>,
     scenes: Vec<Scene>,
     casts: Vec<Cast>,
     pub(super) upload: Duration,
@@ -23,8 +27,22 @@ pub(crate) struct CpuEngine<'v> {
 /// What is made once per change of the settings.
 struct Scene {
     parameters: CastParameters,
+    gradients: Option<Rc<Gradients>>,
     map: Option<SkipMap>,
     leaping: Leaping,
+}
+
+/// A gradient map, and the same as the caster reads it.
+struct Gradients {
+    method: GradientMethod,
+    map: GradientMap,
+    held: HeldGradientMap,
+}
+
+/// The ranges of the blocks of a volume, and those of its gradient map.
+struct Ranges {
+    values: BlockRanges,
+    gradients: Option<BlockRanges>,
 }
 
 impl<'v> CpuEngine<'v> {
@@ -32,20 +50,40 @@ impl<'v> CpuEngine<'v> {
         let start = Instant::now();
         let caster = Caster::with_storage(volume, storage);
         let upload = start.elapsed();
-        Self { volume, storage, caster, scenes: Vec::new(), casts: Vec::new(), upload }
+        Self { volume, storage, caster, gradients: None, scenes: Vec::new(), casts: Vec::new(), upload }
     }
 
     pub(super) fn prepare(&mut self, parameters: &CastParameters, skipping: &Skipping) -> Shot {
+        let gradients = self.gradients(parameters, skipping);
         let (map, leaping) = match skipping.request.plan(self.storage, Pace::Idle) {
             None => (None, Leaping::NOTHING),
-            Some(plan) => self.skip_map(parameters, &plan),
+            Some(plan) => self.skip_map(parameters, gradients.as_deref(), &plan),
         };
-        self.scenes.push(Scene { parameters: parameters.clone(), map, leaping });
+        self.scenes.push(Scene { parameters: parameters.clone(), gradients, map, leaping });
         Shot(self.scenes.len() - 1)
     }
 
-    fn skip_map(&self, parameters: &CastParameters, plan: &SkipPlan) -> (Option<SkipMap>, Leaping) {
-        let occupancy = self.occupancy(&self.ranges(plan), parameters);
+    /// The gradient map that the settings look gradients up in, if they do; the last one is kept.
+    fn gradients(&mut self, parameters: &CastParameters, skipping: &Skipping) -> Option<Rc<Gradients>> {
+        let depth = skipping.gradient_depth(parameters, self.storage)?;
+        let method = parameters.gradient;
+        if let Some(kept) = &self.gradients
+            && (kept.method, kept.map.depth()) == (method, depth)
+        {
+            return Some(kept.clone());
+        }
+        let gradients = Rc::new(Gradients::new(self.volume, self.storage, method, depth));
+        self.gradients = Some(gradients.clone());
+        Some(gradients)
+    }
+
+    fn skip_map(
+        &self,
+        parameters: &CastParameters,
+        gradients: Option<&Gradients>,
+        plan: &SkipPlan,
+    ) -> (Option<SkipMap>, Leaping) {
+        let occupancy = self.occupancy(&self.ranges(gradients, plan.block_size), parameters, gradients);
         let occupied_fraction = occupancy.fraction();
         if !plan.pays(occupied_fraction) {
             return (None, Leaping::not_worth_it(occupied_fraction));
@@ -55,20 +93,32 @@ impl<'v> CpuEngine<'v> {
         (Some(map), leaping)
     }
 
-    fn ranges(&self, plan: &SkipPlan) -> BlockRanges {
-        BlockRanges::of_values(self.volume, self.storage, plan.block_size)
+    fn ranges(&self, gradients: Option<&Gradients>, block_size: BlockSize) -> Ranges {
+        Ranges {
+            values: BlockRanges::of_values(self.volume, self.storage, block_size),
+            gradients: gradients.map(|gradients| BlockRanges::of_gradients(&gradients.map, block_size)),
+        }
     }
 
-    fn occupancy(&self, ranges: &BlockRanges, parameters: &CastParameters) -> Occupancy {
+    fn occupancy(
+        &self,
+        ranges: &Ranges,
+        parameters: &CastParameters,
+        gradients: Option<&Gradients>,
+    ) -> Occupancy {
         let encoding = Encoding::new(self.volume, self.storage);
-        let normalised = ranges.normalised(encoding.normalised_from_stored(parameters.window));
-        Occupancy::new(normalised, None, &Visibility::new(parameters))
+        let normalised_from_stored = encoding.normalised_from_stored(parameters.window);
+        let values = ranges.values.normalised(normalised_from_stored);
+        let of_gradients = ranges.gradients.as_ref().zip(gradients).map(|(ranges, gradients)| {
+            ranges.normalised(gradients.map.normalised_from_code(normalised_from_stored.0))
+        });
+        Occupancy::new(values, of_gradients, &Visibility::new(parameters))
     }
 
     pub(super) fn cast(&mut self, shot: Shot, views: &[View]) -> Duration {
         let scene = &self.scenes[shot.0];
         let start = Instant::now();
-        self.casts = self.caster.cast(&scene.parameters, scene.map.as_ref(), views);
+        self.casts = self.caster.cast(&scene.parameters, &scene.aids(), views);
         start.elapsed()
     }
 
@@ -80,12 +130,41 @@ impl<'v> CpuEngine<'v> {
         &self.scenes[shot.0].leaping
     }
 
-    pub(super) fn update_ms(&self, parameters: &CastParameters, plan: &SkipPlan) -> f64 {
-        let ranges = self.ranges(plan);
+    pub(super) fn gradient_map(&self, shot: Shot) -> Option<GradientMapSize> {
+        let map = &self.scenes[shot.0].gradients.as_ref()?.map;
+        Some(GradientMapSize { depth: map.depth(), bytes: map.byte_size() as u64 })
+    }
+
+    pub(super) fn update_ms(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+        plan: &SkipPlan,
+    ) -> f64 {
+        let gradients = self.gradients(parameters, skipping);
+        let ranges = self.ranges(gradients.as_deref(), plan.block_size);
         let Ok(update_ms) = median_ms::<Infallible>(|| {
-            std::hint::black_box(SkipMap::new(&self.occupancy(&ranges, parameters), plan.structure));
+            let occupancy = self.occupancy(&ranges, parameters, gradients.as_deref());
+            std::hint::black_box(SkipMap::new(&occupancy, plan.structure));
             Ok(())
         });
         update_ms
+    }
+}
+
+impl Gradients {
+    fn new(volume: &Volume, storage: StorageKind, method: GradientMethod, depth: GradientDepth) -> Self {
+        let map = GradientMap::new(volume, storage, method, depth);
+        let held = HeldGradientMap::new(&map);
+        Self { method, map, held }
+    }
+}
+
+impl Scene {
+    fn aids(&self) -> Aids<'_> {
+        Aids {
+            gradient_map: self.gradients.as_deref().map(|gradients| &gradients.held),
+            leap: self.map.as_ref().map_or(Leap::Nothing, Leap::EmptyBlocks),
+        }
     }
 }

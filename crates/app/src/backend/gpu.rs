@@ -1,10 +1,10 @@
 //! A volume on a GPU.
 
-use super::{Leaping, Shot, median_ms};
+use super::{GradientMapSize, Leaping, Shot, median_ms};
 use crate::progress::Bar;
 use crate::skipping::Skipping;
 use std::time::{Duration, Instant};
-use wheatstone_core::cast::{CastParameters, Classifier};
+use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{GradientMethod, Mode};
@@ -24,9 +24,16 @@ pub(crate) struct GpuEngine {
     storage: StorageKind,
     kernels: Option<SkipKernels>,
     gradient_map: Option<((GradientMethod, GradientDepth), GpuGradientMap)>,
-    scenes: Vec<(Prepared, Leaping)>,
+    scenes: Vec<Scene>,
     targets: Vec<Target>,
     pub(super) upload: Duration,
+}
+
+/// What is made once per change of the settings.
+struct Scene {
+    prepared: Prepared,
+    gradient_map: Option<GradientMapSize>,
+    leaping: Leaping,
 }
 
 /// What rays leap over, on the device.
@@ -89,7 +96,9 @@ impl GpuEngine {
         };
         let sources = Sources { volume: &self.volume, gradient_map: gradient_map.as_ref(), leap };
         let prepared = self.renderer.prepare(&self.gpu, &sources, parameters.clone())?;
-        self.scenes.push((prepared, leaping));
+        let gradient_map =
+            gradient_map.as_ref().map(|map| GradientMapSize { depth: map.depth(), bytes: map.byte_size() });
+        self.scenes.push(Scene { prepared, gradient_map, leaping });
         Ok(Shot(self.scenes.len() - 1))
     }
 
@@ -138,11 +147,7 @@ impl GpuEngine {
         parameters: &CastParameters,
         skipping: &Skipping,
     ) -> Result<Option<GpuGradientMap>, GpuError> {
-        let Some(depth) =
-            skipping.gradient_map.filter(|_| parameters.classifier == Classifier::ValueGradient)
-        else {
-            return Ok(None);
-        };
+        let Some(depth) = skipping.gradient_depth(parameters, self.storage) else { return Ok(None) };
         let kind = (parameters.gradient, depth);
         if let Some((kept, map)) = &self.gradient_map
             && *kept == kind
@@ -173,7 +178,7 @@ impl GpuEngine {
             self.targets = views.iter().map(|v| Target::new(&self.gpu, v.size)).collect::<Result<_, _>>()?;
         }
         let start = Instant::now();
-        self.renderer.render(&self.gpu, &self.scenes[shot.0].0, views, &self.targets)?;
+        self.renderer.render(&self.gpu, &self.scenes[shot.0].prepared, views, &self.targets)?;
         Ok(start.elapsed())
     }
 
@@ -182,7 +187,11 @@ impl GpuEngine {
     }
 
     pub(super) fn leaping(&self, shot: Shot) -> &Leaping {
-        &self.scenes[shot.0].1
+        &self.scenes[shot.0].leaping
+    }
+
+    pub(super) fn gradient_map(&self, shot: Shot) -> Option<GradientMapSize> {
+        self.scenes[shot.0].gradient_map
     }
 
     pub(super) fn update_ms(

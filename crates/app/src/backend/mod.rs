@@ -11,6 +11,7 @@ use gpu::GpuEngine;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::skip::{BlockSize, SkipPlan, Structure};
 use wheatstone_core::view::View;
@@ -72,6 +73,22 @@ pub(crate) struct Leaping {
     pub(crate) occupied_fraction: Option<f64>,
     /// Bytes of the structure.
     pub(crate) bytes: u64,
+}
+
+/// The gradient map that a shot looks magnitudes up in, as reports tell it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GradientMapSize {
+    /// Its precision.
+    pub(crate) depth: GradientDepth,
+    /// Bytes that it takes: those of a second volume.
+    pub(crate) bytes: u64,
+}
+
+impl GradientMapSize {
+    /// One object of a report.
+    pub(crate) fn to_json(self) -> Value {
+        json!({ "bits": self.depth.bits(), "bytes": self.bytes })
+    }
 }
 
 impl Leaping {
@@ -206,6 +223,14 @@ impl<'v> Engine<'v> {
         }
     }
 
+    /// The gradient map that a shot looks magnitudes up in, if it does.
+    pub(crate) fn gradient_map(&self, shot: Shot) -> Option<GradientMapSize> {
+        match self {
+            Self::Gpu(engine) => engine.gradient_map(shot),
+            Self::Cpu(engine) => engine.gradient_map(shot),
+        }
+    }
+
     /// Time of working a structure out again after a change of the settings, ms; median of [`UPDATES`].
     pub(crate) fn update_ms(
         &mut self,
@@ -215,7 +240,7 @@ impl<'v> Engine<'v> {
     ) -> Result<f64, GpuError> {
         match self {
             Self::Gpu(engine) => engine.update_ms(parameters, skipping, plan),
-            Self::Cpu(engine) => Ok(engine.update_ms(parameters, plan)),
+            Self::Cpu(engine) => Ok(engine.update_ms(parameters, skipping, plan)),
         }
     }
 

@@ -14,8 +14,9 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::gradient_map::GradientMap;
 use wheatstone_core::phantom::Phantom;
-use wheatstone_core::reference::{Cast, Caster};
+use wheatstone_core::reference::{Cast, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Placement, Settings};
 use wheatstone_core::skip::{BlockSize, Skip, SkipPlan, SkipRequest, Structure, voxel_occupancy};
 use wheatstone_core::transfer::BenchmarkRamp;
@@ -28,7 +29,7 @@ const TURN_DEG: f64 = 1.5;
 /// The turn that fewer frames are spread over, degrees.
 const ARC_DEG: f64 = 90.0;
 
-/// Views that rays are compared with the oracle's in, and how many times smaller than the frames they are.
+/// Pictures that are compared with the oracle's, and how many times smaller than the frames they are.
 const ORACLE_VIEWS: u32 = 4;
 const ORACLE_SHRINK: u32 = 5;
 
@@ -65,9 +66,9 @@ pub(crate) struct SkipBenchArgs {
     #[arg(long, value_name = "SIZES", value_delimiter = ',', default_value = "2,3,4,5,6", value_parser = spec::block_size)]
     block_sizes: Vec<BlockSize>,
 
-    /// Bits of the gradient magnitudes that two-dimensional transfer functions look up on a GPU; none estimates them at each
+    /// Bits of the gradient magnitudes that two-dimensional transfer functions look up; none estimates them around each
     /// sample.
-    #[arg(long, value_enum, default_value_t = GradientMapName::Eight)]
+    #[arg(long, value_enum, default_value_t = GradientMapName::Auto)]
     gradient_map: GradientMapName,
 
     /// What casts the rays; gpu includes software Vulkan.
@@ -169,10 +170,11 @@ impl SkipBenchArgs {
             Backend::Gpu => Engine::gpu(Gpu::open_best()?, &volume, storage)?,
             Backend::Cpu => Engine::cpu(&volume, storage),
         };
-        let caster = Caster::new(&volume);
+        let caster = Caster::with_storage(&volume, storage);
         for transfer in transfers {
             let case = self.case(&name, &volume, &transfer)?;
-            rows.extend(self.measure(&case, &mut engine, &caster)?);
+            let least = self.least_reads(&volume, storage, &caster, &case.parameters)?;
+            rows.extend(self.measure(&case, &mut engine, least)?);
         }
         Ok([engine.backend_name().to_owned(), engine.device_name(), engine.driver_name()])
     }
@@ -191,19 +193,14 @@ impl SkipBenchArgs {
     }
 
     /// Every row of a case.
-    fn measure(
-        &self,
-        case: &Case<'_>,
-        engine: &mut Engine<'_>,
-        caster: &Caster,
-    ) -> Result<Vec<Row>, Failure> {
+    fn measure(&self, case: &Case<'_>, engine: &mut Engine<'_>, least: f64) -> Result<Vec<Row>, Failure> {
         let variants = self.variants();
         let shots = variants
             .iter()
             .map(|variant| engine.prepare(&case.parameters, &self.skipping(variant)))
             .collect::<Result<Vec<_>, _>>()?;
         let frames = self.interleave(engine, &shots, case.name)?;
-        let oracle_ratios = self.oracle_ratios(engine, &shots, caster, &case.parameters)?;
+        let oracle_ratios = self.oracle_ratios(engine, &shots, least)?;
         let rays = self.size.iter().map(|&side| f64::from(side)).product::<f64>();
         let medians: Vec<f64> =
             frames.iter().map(|of_shot| median_of(of_shot, |frame| frame.frame_ms)).collect();
@@ -247,7 +244,10 @@ impl SkipBenchArgs {
             Some(Structure::Distance) => Skip::Distance,
             Some(Structure::Anisotropic) => Skip::Anisotropic,
         };
-        Skipping::by(SkipRequest { skip, block_size: variant.block_size }, self.gradient_map)
+        Skipping {
+            request: SkipRequest { skip, block_size: variant.block_size },
+            gradient_map: self.gradient_map,
+        }
     }
 
     /// Every frame with every shot in turn, after one of each that does not count.
@@ -280,26 +280,46 @@ impl SkipBenchArgs {
         test_view((turn_deg * f64::from(index)).to_radians(), self.size)
     }
 
-    /// What the rays of each shot read, over what they must read, in a few small pictures.
+    /// Views of the pictures that are compared with the oracle's.
+    fn oracle_views(&self) -> Result<Vec<View>, Failure> {
+        let size = self.size.map(|side| side.div_ceil(ORACLE_SHRINK));
+        (0..ORACLE_VIEWS)
+            .map(|i| test_view((ARC_DEG / f64::from(ORACLE_VIEWS) * f64::from(i)).to_radians(), size))
+            .collect()
+    }
+
+    /// What rays must read in those pictures.
+    fn least_reads(
+        &self,
+        volume: &Volume,
+        storage: StorageKind,
+        caster: &Caster,
+        parameters: &CastParameters,
+    ) -> Result<f64, Failure> {
+        let gradient_map = self
+            .skipping(&Variant { structure: None, block_size: None })
+            .gradient_depth(parameters, storage)
+            .map(|depth| GradientMap::new(volume, storage, parameters.gradient, depth))
+            .map(|map| HeldGradientMap::new(&map));
+        let views = self.oracle_views()?;
+        let least: Vec<Cast> =
+            views.iter().map(|view| caster.cast_by_oracle(parameters, gradient_map.as_ref(), view)).collect();
+        Ok(all_reads(&least).max(1.0))
+    }
+
+    /// What the rays of each shot read, over what they must read.
     fn oracle_ratios(
         &self,
         engine: &mut Engine<'_>,
         shots: &[Shot],
-        caster: &Caster,
-        parameters: &CastParameters,
+        least: f64,
     ) -> Result<Vec<f64>, Failure> {
-        let size = self.size.map(|side| side.div_ceil(ORACLE_SHRINK));
-        let views = (0..ORACLE_VIEWS)
-            .map(|i| test_view((ARC_DEG / f64::from(ORACLE_VIEWS) * f64::from(i)).to_radians(), size))
-            .collect::<Result<Vec<_>, _>>()?;
-        let least: Vec<Cast> = views.iter().map(|view| caster.cast_by_oracle(parameters, view)).collect();
-        let all = |(samples, map_reads): (f64, f64)| samples + map_reads;
-        let least = all(totals(&least)).max(1.0);
+        let views = self.oracle_views()?;
         shots
             .iter()
             .map(|&shot| {
                 engine.cast(shot, &views)?;
-                Ok(all(totals(&engine.read()?)) / least)
+                Ok(all_reads(&engine.read()?) / least)
             })
             .collect()
     }
@@ -353,6 +373,12 @@ fn totals(casts: &[Cast]) -> (f64, f64) {
     let samples: u64 = casts.iter().map(|cast| cast.samples).sum();
     let map_reads: u64 = casts.iter().map(|cast| cast.map_reads).sum();
     (samples as f64, map_reads as f64)
+}
+
+/// Samples and map reads of some casts together.
+fn all_reads(casts: &[Cast]) -> f64 {
+    let (samples, map_reads) = totals(casts);
+    samples + map_reads
 }
 
 fn median_of(frames: &[Frame], number: fn(&Frame) -> f64) -> f64 {

@@ -1,6 +1,8 @@
 //! `render`: a volume file to a picture.
 
-use crate::backend::{BackendChoice, Engine, Job, Leaping, median, milliseconds, note_fallback};
+use crate::backend::{
+    BackendChoice, Engine, GradientMapSize, Job, Leaping, median, milliseconds, note_fallback,
+};
 use crate::camera::{CameraArgs, Stereo};
 use crate::failure::Failure;
 use crate::heat_map::{heat_map, most_reads};
@@ -89,6 +91,7 @@ struct Made {
     /// Samples and map reads of a white pixel, where those are shown.
     white: Option<u32>,
     leaping: Leaping,
+    gradient_map: Option<GradientMapSize>,
     picture_size: [u32; 2],
     outputs: Vec<PathBuf>,
 }
@@ -157,6 +160,7 @@ impl RenderArgs {
             map_reads: 0,
             white: None,
             leaping: engine.leaping(shot).clone(),
+            gradient_map: engine.gradient_map(shot),
             picture_size: [0; 2],
             outputs: Vec::new(),
         };
@@ -223,6 +227,7 @@ impl RenderArgs {
                 "samples": made.samples,
                 "rays": self.rays(),
                 "skip": made.leaping.to_json(made.map_reads),
+                "gradient_map": made.gradient_map.map(GradientMapSize::to_json),
                 "white": made.white,
                 "upload_ms": milliseconds(engine.upload_time()),
                 "outputs": outputs,

@@ -201,14 +201,27 @@ fn the_gpu_makes_the_same_picture() {
         return;
     }
     let bench = Bench::new();
-    let flags = ["--shading", "phong", "--stereo", "top-bottom", "--azimuth", "20", "--tf", "generic"];
-    bench.render("cpu.png", &flags);
-    let gpu = ["render", "sphere.nrrd", "-o", "gpu.png", "--backend", "gpu", "--size", "32x24", "--json"];
-    let run = bench.run(&[&gpu[..], &flags].concat());
-    assert_eq!(run.code, 0, "{}", run.stderr);
-    assert_eq!(run.json()["backend"], "gpu");
-    let compared = bench.run(&["compare", "cpu.png", "gpu.png", "--json"]).json();
-    assert!(compared["dssim"].as_f64().unwrap() <= 0.002, "{compared}");
+    let looks: [&[&str]; 3] = [
+        &["--shading", "phong", "--stereo", "top-bottom", "--azimuth", "20", "--tf", "generic"],
+        &["--tf", "ramp:0.3..1,0.05..0.2", "--skip", "distance"],
+        &["--tf", "ramp:0.3..1,0.05..0.2", "--skip", "distance", "--gradient-map", "none"],
+    ];
+    for look in looks {
+        let cpu = bench.render("cpu.png", &[&["--json"], look].concat()).json();
+        let gpu = ["render", "sphere.nrrd", "-o", "gpu.png", "--backend", "gpu", "--size", "32x24", "--json"];
+        let run = bench.run(&[&gpu[..], look].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let gpu = run.json();
+        assert_eq!(gpu["backend"], "gpu");
+        assert_eq!(gpu["gradient_map"]["bits"], cpu["gradient_map"]["bits"], "{look:?}");
+        let occupied = [&cpu, &gpu].map(|json| json["skip"]["occupied_fraction"].as_f64());
+        assert!(
+            occupied[0].zip(occupied[1]).is_none_or(|(cpu, gpu)| (cpu - gpu).abs() <= 0.02),
+            "{look:?}: {occupied:?}"
+        );
+        let compared = bench.run(&["compare", "cpu.png", "gpu.png", "--json"]).json();
+        assert!(compared["dssim"].as_f64().unwrap() <= 0.002, "{look:?}: {compared}");
+    }
 }
 
 #[test]

@@ -18,6 +18,7 @@ fn render_reports_one_object() {
         "driver",
         "frame_ms",
         "frames_ms",
+        "gradient_map",
         "mode",
         "outputs",
         "picture_size",
@@ -45,6 +46,20 @@ fn render_reports_one_object() {
     assert!(json["samples"].as_u64().unwrap() > 0);
     assert_eq!(json["outputs"], serde_json::json!(["a.png"]));
     assert_eq!(keys(&json["skip"]), ["block_size", "bytes", "map_reads", "occupied_fraction", "structure"]);
+}
+
+#[test]
+fn gradients_are_looked_up_where_the_transfer_function_asks_for_them() {
+    let bench = Bench::new();
+    let map =
+        |flags: &[&str]| bench.render("g.png", &[&["--json"], flags].concat()).json()["gradient_map"].clone();
+    let two_dimensional = ["--tf", "ramp:0.3..1,0.05..0.2"];
+    let with = |flags: &[&'static str]| map(&[&two_dimensional, flags].concat());
+    assert_eq!(with(&[]), serde_json::json!({ "bits": 8, "bytes": 24 * 24 * 24 }));
+    assert_eq!(with(&["--gradient-map", "16"]), serde_json::json!({ "bits": 16, "bytes": 2 * 24 * 24 * 24 }));
+    assert_eq!(with(&["--storage", "16"])["bits"], 16);
+    assert!(with(&["--gradient-map", "none"]).is_null());
+    assert!(map(&["--tf", "ramp:0.3..1", "--gradient-map", "8"]).is_null());
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::context::Context;
 use super::gradient::gradient_at;
 use super::lanes::{Lanes, Mask};
 use super::lut::{Entry, lut_at, lut_at_2d};
+use super::magnitude::{Steepness, steepness_at};
 use super::vector::Vec3;
 use crate::transfer::OPAQUE_LOG2;
 
@@ -79,10 +80,9 @@ impl Classify for ValueGradient {
         value: L,
         _: L,
     ) -> Classified<L> {
-        let gradient = gradient_at(context, token, position);
-        let magnitude = gradient.length_squared().sqrt().min(L::splat(token, 1.0));
+        let Steepness { magnitude, gradient } = steepness_at(context, token, position);
         let entry = lut_at_2d(&context.parameters.lut, token, value, magnitude);
-        Classified { entry, gradient: Some(gradient) }
+        Classified { entry, gradient }
     }
 }
 

@@ -1,17 +1,19 @@
 //! What all parts of a cast may read.
 
+use super::aids::Leap;
 use super::lanes::Lanes;
 use super::skip::SkipSampler;
 use super::vector::Vec3;
 use super::volume::Sampler;
 use crate::cast::{CastParameters, Classifier};
-use crate::skip::SkipMap;
 use glam::{Mat3, Vec3A};
 
 /// The volume and the settings, with what they amount to in voxel space.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Context<'a> {
     pub(super) sampler: Sampler<'a>,
+    /// The gradient magnitudes, if they are looked up.
+    pub(super) gradient_map: Option<Sampler<'a>>,
     pub(super) parameters: &'a CastParameters,
     /// What is empty, if rays are to leap over it.
     pub(super) skip: Option<SkipSampler<'a>>,
@@ -30,18 +32,24 @@ pub(super) struct Context<'a> {
 impl<'a> Context<'a> {
     pub(super) fn new(
         sampler: Sampler<'a>,
+        gradient_map: Option<Sampler<'a>>,
         parameters: &'a CastParameters,
-        skip: Option<&'a SkipMap>,
+        leap: Leap<'a>,
     ) -> Self {
         let dims = sampler.dims();
         let voxel_from_metric = Mat3::from_diagonal(dims.into()) * parameters.texture_from_metric;
         Self {
             sampler,
+            gradient_map,
             parameters,
-            skip: skip.map(|map| {
-                let is_preintegrated = parameters.classifier == Classifier::PreIntegrated;
-                SkipSampler::new(map, parameters.mode, is_preintegrated, parameters.sampling_factor.recip())
-            }),
+            skip: match leap {
+                Leap::Nothing => None,
+                Leap::EmptyBlocks(map) => {
+                    let is_preintegrated = parameters.classifier == Classifier::PreIntegrated;
+                    let step_length = parameters.sampling_factor.recip();
+                    Some(SkipSampler::new(map, parameters.mode, is_preintegrated, step_length))
+                }
+            },
             box_lo: parameters.box_lo * dims,
             box_hi: parameters.box_hi * dims,
             plane_normal: Vec3A::from_vec4(parameters.plane) / dims,

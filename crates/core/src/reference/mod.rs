@@ -5,16 +5,19 @@
 //! is the twin of the WGSL files of the same name in `wheatstone-render`'s `shaders/lib`.
 
 mod accumulate;
+mod aids;
 mod classify;
 mod composite;
 mod context;
 mod extreme_value;
 mod first_hit;
 mod gradient;
+mod gradient_map;
 mod lanes;
 mod lanes_exact;
 mod lanes_wide;
 mod lut;
+mod magnitude;
 mod oracle;
 mod ray;
 mod renderer;
@@ -24,5 +27,7 @@ mod value_sum;
 mod vector;
 mod volume;
 
+pub use aids::{Aids, Leap};
+pub use gradient_map::HeldGradientMap;
 pub use ray::sample_count;
 pub use renderer::{Cast, Caster, Reads};

@@ -1,11 +1,13 @@
 //! The caster: a volume ready for sampling, and pictures of it.
 
 use super::accumulate::Accumulate;
+use super::aids::{Aids, Leap};
 use super::classify::{PreIntegrated, Value, ValueGradient};
 use super::composite::Composite;
 use super::context::Context;
 use super::extreme_value::{ExtremeValue, Maximum, Minimum};
 use super::first_hit::FirstHit;
+use super::gradient_map::HeldGradientMap;
 use super::lanes::{Lanes, MOST_LANES};
 use super::lanes_exact::Exact;
 use super::oracle::Oracle;
@@ -15,7 +17,6 @@ use super::volume::{PaddedVoxels, Sampler};
 use crate::cast::{CastParameters, Classifier};
 use crate::image::Image;
 use crate::scene::Mode;
-use crate::skip::SkipMap;
 use crate::view::{RayField, View};
 use crate::volume::{Encoding, StorageKind, Volume};
 use fearless_simd::{Level, Simd, f32x16};
@@ -73,40 +74,38 @@ impl Caster {
         Self { encoding, voxels }
     }
 
-    /// Casts every view on all cores, sixteen rays at once. A map of what is empty for these settings makes it faster and
-    /// changes nothing.
+    /// Casts every view on all cores, sixteen rays at once.
     ///
     /// Ray by ray where the machine has no vectors for it (AVX-512, AVX2, NEON), or for more than 2³² voxels.
-    pub fn cast(&self, parameters: &CastParameters, skip: Option<&SkipMap>, views: &[View]) -> Vec<Cast> {
+    pub fn cast(&self, parameters: &CastParameters, aids: &Aids<'_>, views: &[View]) -> Vec<Cast> {
         if u32::try_from(self.voxels.len()).is_err() {
-            return self.cast_exactly(parameters, skip, views);
+            return self.cast_exactly(parameters, aids, views);
         }
         match Level::new() {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx512(simd) => self.cast_on(Wide(simd), parameters, skip, views),
+            Level::Avx512(simd) => self.cast_on(Wide(simd), parameters, aids, views),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx2(simd) => self.cast_on(Wide(simd), parameters, skip, views),
+            Level::Avx2(simd) => self.cast_on(Wide(simd), parameters, aids, views),
             #[cfg(target_arch = "aarch64")]
-            Level::Neon(simd) => self.cast_on(Wide(simd), parameters, skip, views),
-            _ => self.cast_exactly(parameters, skip, views),
+            Level::Neon(simd) => self.cast_on(Wide(simd), parameters, aids, views),
+            _ => self.cast_exactly(parameters, aids, views),
         }
     }
 
     /// Casts every view on all cores, ray by ray in double precision: the truth.
-    pub fn cast_exactly(
-        &self,
-        parameters: &CastParameters,
-        skip: Option<&SkipMap>,
-        views: &[View],
-    ) -> Vec<Cast> {
-        self.cast_on(OneByOne, parameters, skip, views)
+    pub fn cast_exactly(&self, parameters: &CastParameters, aids: &Aids<'_>, views: &[View]) -> Vec<Cast> {
+        self.cast_on(OneByOne, parameters, aids, views)
     }
 
     /// What rays must read at the least, whatever the structure: every visible sample, and one read of a map for each run of
     /// samples that are not, up to the end of the ray. For composites; the picture stays transparent.
-    pub fn cast_by_oracle(&self, parameters: &CastParameters, view: &View) -> Cast {
-        let map = self.encoding.normalised_from_stored(parameters.window);
-        let context = Context::new(Sampler::new(&self.voxels, map), parameters, None);
+    pub fn cast_by_oracle(
+        &self,
+        parameters: &CastParameters,
+        gradient_map: Option<&HeldGradientMap>,
+        view: &View,
+    ) -> Cast {
+        let context = self.context(parameters, &Aids { gradient_map, leap: Leap::Nothing });
         match parameters.classifier {
             Classifier::ValueGradient => cast_bands::<Oracle<ValueGradient>>(OneByOne, &context, view),
             Classifier::PreIntegrated => cast_bands::<Oracle<PreIntegrated>>(OneByOne, &context, view),
@@ -118,12 +117,18 @@ impl Caster {
         &self,
         path: impl Path,
         parameters: &CastParameters,
-        skip: Option<&SkipMap>,
+        aids: &Aids<'_>,
         views: &[View],
     ) -> Vec<Cast> {
-        let map = self.encoding.normalised_from_stored(parameters.window);
-        let context = Context::new(Sampler::new(&self.voxels, map), parameters, skip);
+        let context = self.context(parameters, aids);
         views.iter().map(|view| cast_view(path, &context, view)).collect()
+    }
+
+    fn context<'a>(&'a self, parameters: &'a CastParameters, aids: &Aids<'a>) -> Context<'a> {
+        let normalised_from_stored = self.encoding.normalised_from_stored(parameters.window);
+        let gradient_map = aids.gradient_map.map(|map| map.sampler(normalised_from_stored.0));
+        let sampler = Sampler::new(&self.voxels, normalised_from_stored);
+        Context::new(sampler, gradient_map, parameters, aids.leap)
     }
 }
 

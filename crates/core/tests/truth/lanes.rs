@@ -4,7 +4,8 @@ use crate::scene::*;
 use crate::tolerance;
 use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::reference::{Cast, Caster};
+use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
+use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Light, Mode, Placement, Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
@@ -51,16 +52,35 @@ fn straight() -> View {
     look(DVec3::Z, DVec3::ZERO, DVec3::Y, orthographic(0.3, size), size)
 }
 
-fn both(volume: &Volume, kind: StorageKind, settings: &Settings, view: View) -> [Cast; 2] {
+fn both(
+    volume: &Volume,
+    kind: StorageKind,
+    settings: &Settings,
+    depth: Option<GradientDepth>,
+    view: View,
+) -> [Cast; 2] {
     let parameters = CastParameters::new(settings, &Placement::new(volume, world_from_patient()));
     let caster = Caster::with_storage(volume, kind);
-    [caster.cast(&parameters, None, &[view]), caster.cast_exactly(&parameters, None, &[view])]
+    let gradient_map =
+        depth.map(|depth| HeldGradientMap::new(&GradientMap::new(volume, kind, settings.gradient, depth)));
+    let aids = Aids { gradient_map: gradient_map.as_ref(), ..Aids::default() };
+    [caster.cast(&parameters, &aids, &[view]), caster.cast_exactly(&parameters, &aids, &[view])]
         .map(|mut casts| casts.remove(0))
 }
 
 fn assert_agree(volume: &Volume, kind: StorageKind, settings: &Settings, what: &str) {
+    assert_agree_with(volume, kind, settings, None, what);
+}
+
+fn assert_agree_with(
+    volume: &Volume,
+    kind: StorageKind,
+    settings: &Settings,
+    depth: Option<GradientDepth>,
+    what: &str,
+) {
     for (from, view) in [("outside", outside()), ("inside", inside()), ("straight", straight())] {
-        let [fast, exact] = both(volume, kind, settings, view);
+        let [fast, exact] = both(volume, kind, settings, depth, view);
         let exact_hits = exact.image.depth_m.iter().filter(|d| d.is_finite()).count();
         assert!(exact_hits > 100, "{what} from {from}: only {exact_hits} hits");
         let comparison = difference(&fast, &exact);
@@ -133,6 +153,36 @@ fn every_shading_and_classifier_agrees() {
             }
         }
     }
+}
+
+#[test]
+fn gradient_maps_agree() {
+    let volume = blobs();
+    let gradients = [GradientMethod::CentralDifferences, GradientMethod::Tetrahedron];
+    let depths = [GradientDepth::Bits8, GradientDepth::Bits16];
+    for (gradient, depth) in gradients.into_iter().flat_map(|gradient| depths.map(|depth| (gradient, depth)))
+    {
+        for (kind, shading) in [(StorageKind::U8, Shading::Phong), (StorageKind::F32, Shading::Shadow)] {
+            let settings =
+                Settings { shading, gradient, ..exact_settings(volume.full_window(), transfer_2d()) };
+            let what = format!("{gradient:?}, {depth:?}, {kind:?}, {shading:?}");
+            assert_agree_with(&volume, kind, &settings, Some(depth), &what);
+        }
+    }
+}
+
+/// Magnitudes between voxels are interpolated ones, which are not those of interpolated gradients, but near them.
+#[test]
+fn a_gradient_map_shows_what_estimates_show() {
+    let volume = blobs();
+    let settings = exact_settings(volume.full_window(), transfer_2d());
+    let of = |depth| both(&volume, StorageKind::F32, &settings, depth, outside())[1].clone();
+    let [estimated, bits_8, bits_16] =
+        [None, Some(GradientDepth::Bits8), Some(GradientDepth::Bits16)].map(of);
+    assert!(difference(&bits_16, &estimated).dssim() < tolerance::GRADIENT_MAP_DSSIM);
+    assert!(difference(&bits_8, &bits_16).dssim() < tolerance::GRADIENT_CODES_DSSIM);
+    assert!(difference(&bits_16, &estimated).max_abs > 0.0, "the map is not read");
+    assert!(difference(&bits_8, &bits_16).max_abs > 0.0, "the map's own codes are not read");
 }
 
 #[test]

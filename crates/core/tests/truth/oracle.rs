@@ -3,7 +3,7 @@
 use crate::scene::*;
 use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::reference::{Caster, Reads};
+use wheatstone_core::reference::{Aids, Caster, Leap, Reads};
 use wheatstone_core::scene::{Placement, Settings};
 use wheatstone_core::skip::{BlockRanges, BlockSize, Occupancy, SkipMap, Structure, Visibility};
 use wheatstone_core::volume::{Encoding, StorageKind, Volume};
@@ -21,7 +21,7 @@ fn read(alpha: f32) -> Reads {
     let (volume, settings) = slabs(alpha);
     let along_z = look(DVec3::Z, DVec3::ZERO, DVec3::Y, orthographic(0.05, SIZE), SIZE);
     let parameters = CastParameters::new(&settings, &Placement::new(&volume, world_from_patient()));
-    let cast = Caster::new(&volume).cast_by_oracle(&parameters, &along_z);
+    let cast = Caster::new(&volume).cast_by_oracle(&parameters, None, &along_z);
     assert!(cast.reads.iter().all(|ray| *ray == cast.reads[0]), "all rays go through the same slabs");
     cast.reads[0]
 }
@@ -43,7 +43,7 @@ fn no_structure_reads_less() {
     let parameters = CastParameters::new(&settings, &Placement::new(&volume, world_from_patient()));
     let view = look(DVec3::new(0.2, 0.15, 0.4), DVec3::ZERO, DVec3::Y, perspective(0.8, SIZE), SIZE);
     let caster = Caster::new(&volume);
-    let least = caster.cast_by_oracle(&parameters, &view);
+    let least = caster.cast_by_oracle(&parameters, None, &view);
     let encoding = Encoding::new(&volume, StorageKind::F32);
     let normalised_from_stored = encoding.normalised_from_stored(settings.window);
     for structure in [Structure::Occupancy, Structure::Distance, Structure::Anisotropic] {
@@ -51,8 +51,11 @@ fn no_structure_reads_less() {
         let occupancy =
             Occupancy::new(ranges.normalised(normalised_from_stored), None, &Visibility::new(&parameters));
         let map = SkipMap::new(&occupancy, structure);
-        let cast = caster.cast_exactly(&parameters, Some(&map), &[view]).remove(0);
+        let cast = caster.cast_exactly(&parameters, &Leap::EmptyBlocks(&map).into(), &[view]).remove(0);
         assert!(cast.samples >= least.samples && cast.map_reads >= least.map_reads, "{structure:?}");
-        assert!(cast.samples < caster.cast_exactly(&parameters, None, &[view])[0].samples, "{structure:?}");
+        assert!(
+            cast.samples < caster.cast_exactly(&parameters, &Aids::default(), &[view])[0].samples,
+            "{structure:?}"
+        );
     }
 }

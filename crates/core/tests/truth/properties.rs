@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::phantom::Phantom;
-use wheatstone_core::reference::{Cast, Caster};
+use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Light, Mode, Placement, Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
@@ -165,7 +165,7 @@ proptest! {
             Caster::new(&volume)
         };
         let rays = u64::from(view.size[0]) * u64::from(view.size[1]);
-        for cast in [caster.cast(&parameters, None, &[view]).remove(0), caster.cast_exactly(&parameters, None, &[view]).remove(0)] {
+        for cast in [caster.cast(&parameters, &Aids::default(), &[view]).remove(0), caster.cast_exactly(&parameters, &Aids::default(), &[view]).remove(0)] {
             if let Err(reason) = check(&cast, &view) {
                 prop_assert!(false, "{}", reason);
             }

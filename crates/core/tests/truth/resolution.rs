@@ -6,7 +6,7 @@ use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::metrics::compare;
 use wheatstone_core::phantom::Phantom;
-use wheatstone_core::reference::{Cast, Caster};
+use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::{Clip, Mode, Placement, Settings, Shading};
 use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::View;
@@ -125,7 +125,7 @@ fn saturated_rays_have_nothing_to_gain() {
             let endless = CastParameters { termination_alpha: 2.0, ..saturated.clone() };
             let caster = Caster::new(&volume);
             let [saturated, endless] = [saturated, endless]
-                .map(|parameters| caster.cast_exactly(&parameters, None, &[view()]).remove(0));
+                .map(|parameters| caster.cast_exactly(&parameters, &Aids::default(), &[view()]).remove(0));
             let difference = largest_difference(&saturated, &endless);
             assert!(difference <= tolerance::SATURATION, "{phantom} {name}: {difference}");
             samples = [samples[0] + saturated.samples, samples[1] + endless.samples];

@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::{Image, RgbImage};
 use wheatstone_core::metrics::{Comparison, compare};
-use wheatstone_core::reference::{Cast, Caster};
+use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::{Placement, Settings};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::{Frustum, OrthographicBox, Projection, View};
@@ -31,7 +31,7 @@ pub(crate) fn cast_at(
     view: &View,
 ) -> Cast {
     let parameters = CastParameters::new(settings, &Placement::new(volume, world_from_patient));
-    Caster::new(volume).cast_exactly(&parameters, None, std::slice::from_ref(view)).remove(0)
+    Caster::new(volume).cast_exactly(&parameters, &Aids::default(), std::slice::from_ref(view)).remove(0)
 }
 
 /// A volume of values from 0 to 1 by a function of the position in voxels (centres at ½).

@@ -4,7 +4,8 @@ use crate::scene::*;
 use glam::DVec3;
 use proptest::prelude::*;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::reference::{Cast, Caster};
+use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
+use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap, Leap};
 use wheatstone_core::scene::{GradientMethod, Mode, Placement, Settings, Shading};
 use wheatstone_core::skip::{BlockRanges, BlockSize, Occupancy, SkipMap, Structure, Visibility};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
@@ -90,6 +91,10 @@ fn gapped_transfers() -> impl Strategy<Value = TransferFunction> {
     })
 }
 
+fn depths() -> impl Strategy<Value = GradientDepth> {
+    prop::sample::select(vec![GradientDepth::Bits8, GradientDepth::Bits16])
+}
+
 fn looks() -> impl Strategy<Value = Settings> {
     let mode = prop_oneof![
         6 => Just(Mode::Composite),
@@ -127,15 +132,20 @@ fn map(
     volume: &Volume,
     kind: StorageKind,
     parameters: &CastParameters,
+    gradient_map: Option<&GradientMap>,
     size: BlockSize,
     structure: Structure,
 ) -> SkipMap {
     let normalised = Encoding::new(volume, kind).normalised_from_stored(parameters.window);
-    let ranges = BlockRanges::of_values(volume, kind, size);
-    SkipMap::new(
-        &Occupancy::new(ranges.normalised(normalised), None, &Visibility::new(parameters)),
-        structure,
-    )
+    let values = BlockRanges::of_values(volume, kind, size);
+    let gradients = gradient_map
+        .map(|map| (BlockRanges::of_gradients(map, size), map.normalised_from_code(normalised.0)));
+    let occupancy = Occupancy::new(
+        values.normalised(normalised),
+        gradients.as_ref().map(|(ranges, normalised)| ranges.normalised(*normalised)),
+        &Visibility::new(parameters),
+    );
+    SkipMap::new(&occupancy, structure)
 }
 
 fn bits(cast: &Cast) -> (Vec<[u32; 4]>, Vec<u32>) {
@@ -161,6 +171,7 @@ fn looks_behind() -> impl Strategy<Value = Settings> {
 fn assert_skipping_changes_nothing(
     (volume, kind): &(Volume, StorageKind),
     settings: Settings,
+    depth: Option<GradientDepth>,
     view: View,
     sides: [u32; 3],
 ) -> Result<(), TestCaseError> {
@@ -168,13 +179,18 @@ fn assert_skipping_changes_nothing(
     let settings = Settings { window, ..settings };
     let parameters = CastParameters::new(&settings, &Placement::new(volume, world_from_patient()));
     let caster = Caster::with_storage(volume, *kind);
-    let whole = bits(&caster.cast(&parameters, None, &[view])[0]);
-    let whole_exactly = bits(&caster.cast_exactly(&parameters, None, &[view])[0]);
+    let gradient_map = depth.map(|depth| GradientMap::new(volume, *kind, settings.gradient, depth));
+    let held = gradient_map.as_ref().map(HeldGradientMap::new);
+    let plain = Aids { gradient_map: held.as_ref(), leap: Leap::Nothing };
+    let whole = bits(&caster.cast(&parameters, &plain, &[view])[0]);
+    let whole_exactly = bits(&caster.cast_exactly(&parameters, &plain, &[view])[0]);
+    let size = BlockSize::new(sides).unwrap();
     for structure in STRUCTURES {
-        let map = map(volume, *kind, &parameters, BlockSize::new(sides).unwrap(), structure);
-        let skipped = bits(&caster.cast(&parameters, Some(&map), &[view])[0]);
+        let map = map(volume, *kind, &parameters, gradient_map.as_ref(), size, structure);
+        let aids = Aids { leap: Leap::EmptyBlocks(&map), ..plain };
+        let skipped = bits(&caster.cast(&parameters, &aids, &[view])[0]);
         prop_assert!(skipped == whole, "{:?}, f32 lanes", structure);
-        let skipped = bits(&caster.cast_exactly(&parameters, Some(&map), &[view])[0]);
+        let skipped = bits(&caster.cast_exactly(&parameters, &aids, &[view])[0]);
         prop_assert!(skipped == whole_exactly, "{:?}, f64 lane", structure);
     }
     Ok(())
@@ -187,10 +203,11 @@ proptest! {
     fn skipping_changes_nothing(
         volume in sparse_volumes(prop_oneof![1 => 1_usize..4, 3 => 5_usize..32]),
         settings in looks(),
+        depth in prop::option::of(depths()),
         view in views(),
         sides in prop::array::uniform3(prop_oneof![2_u32..5, 2_u32..=16]),
     ) {
-        assert_skipping_changes_nothing(&volume, settings, view, sides)?;
+        assert_skipping_changes_nothing(&volume, settings, depth, view, sides)?;
     }
 
     #[test]
@@ -200,7 +217,7 @@ proptest! {
         view in views(),
         side in 2_u32..4,
     ) {
-        assert_skipping_changes_nothing(&volume, settings, view, [side; 3])?;
+        assert_skipping_changes_nothing(&volume, settings, None, view, [side; 3])?;
     }
 }
 
@@ -229,13 +246,17 @@ fn a_slab_is_seen_wherever_it_is() {
                 };
                 let parameters =
                     CastParameters::new(&settings, &Placement::new(&volume, world_from_patient()));
-                let whole: Vec<_> = caster.cast(&parameters, None, &views).iter().map(bits).collect();
+                let whole: Vec<_> =
+                    caster.cast(&parameters, &Aids::default(), &views).iter().map(bits).collect();
                 for (structure, side) in STRUCTURES.into_iter().flat_map(|s| [2, 3, 4].map(|side| (s, side)))
                 {
                     let size = BlockSize::cube(side).unwrap();
-                    let map = map(&volume, kind, &parameters, size, structure);
-                    let skipped: Vec<_> =
-                        caster.cast(&parameters, Some(&map), &views).iter().map(bits).collect();
+                    let map = map(&volume, kind, &parameters, None, size, structure);
+                    let skipped: Vec<_> = caster
+                        .cast(&parameters, &Leap::EmptyBlocks(&map).into(), &views)
+                        .iter()
+                        .map(bits)
+                        .collect();
                     assert!(
                         skipped == whole,
                         "{mode:?} {preintegrated}, factor {sampling_factor}, {structure:?} of {side}³, slab {slab:?}"
@@ -255,12 +276,12 @@ fn skipping_saves_samples_and_a_better_map_reads() {
     let parameters = CastParameters::new(&settings, &Placement::new(&volume, world_from_patient()));
     let view = look(DVec3::new(0.3, 0.5, 1.5), DVec3::ZERO, DVec3::Y, perspective(0.5, size), size);
     let caster = Caster::with_storage(&volume, kind);
-    let whole = caster.cast(&parameters, None, &[view]).remove(0);
+    let whole = caster.cast(&parameters, &Aids::default(), &[view]).remove(0);
     assert_eq!(whole.map_reads, 0);
     let block_size = BlockSize::cube(4).unwrap();
     let costs = STRUCTURES.map(|structure| {
-        let map = map(&volume, kind, &parameters, block_size, structure);
-        let cast = caster.cast(&parameters, Some(&map), &[view]).remove(0);
+        let map = map(&volume, kind, &parameters, None, block_size, structure);
+        let cast = caster.cast(&parameters, &Leap::EmptyBlocks(&map).into(), &[view]).remove(0);
         assert!(cast.samples * 2 < whole.samples, "{structure:?}: {} of {}", cast.samples, whole.samples);
         cast.map_reads
     });

@@ -47,3 +47,10 @@ pub(crate) const LANES_OTHER_PIXELS: f64 = 0.01;
 
 /// Difference of two depths that are the same hit, metres: a tenth of a voxel.
 pub(crate) const LANES_DEPTH_M: f64 = 1e-3;
+
+/// DSSIM of pictures by interpolated gradient magnitudes and by magnitudes of gradients estimated at each sample, where
+/// magnitudes are smooth but for the middle of each ball.
+pub(crate) const GRADIENT_MAP_DSSIM: f64 = 0.01;
+
+/// DSSIM of pictures by magnitudes of 8 and of 16 bits: half a 255th of the largest magnitude.
+pub(crate) const GRADIENT_CODES_DSSIM: f64 = 1e-3;

@@ -4,6 +4,7 @@ use crate::device::on_device;
 use crate::scene::*;
 use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::reference::{Aids, Caster};
 use wheatstone_core::scene::{Mode, Settings, Shading};
 use wheatstone_core::view::Rig;
 use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels};
@@ -100,9 +101,8 @@ fn volumes_and_settings_alternate_on_one_renderer() {
             for mode in [Mode::Composite, Mode::Mip] {
                 let settings = Settings { mode, ..Settings::new(volume.full_window(), transfer(0.5)) };
                 let parameters = CastParameters::new(&settings, &placement(volume));
-                let cpu = wheatstone_core::reference::Caster::new(volume)
-                    .cast_exactly(&parameters, None, &[outside()])
-                    .remove(0);
+                let cpu =
+                    Caster::new(volume).cast_exactly(&parameters, &Aids::default(), &[outside()]).remove(0);
                 shown.push((renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap(), cpu));
             }
         }

@@ -6,14 +6,15 @@ use crate::scene::*;
 use crate::tolerance;
 use glam::{DAffine3, DVec3, Vec3};
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::metrics::compare;
 use wheatstone_core::phantom::Phantom;
-use wheatstone_core::reference::Cast;
+use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Light, Mode, Settings, Shading};
 use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume, VoxelType, Window};
-use wheatstone_render::{Gpu, Renderer, TexelFormat};
+use wheatstone_render::{Gpu, GpuGradientMap, GpuVolume, Leap, Renderer, Sources, TexelFormat};
 
 struct Case {
     name: String,
@@ -164,6 +165,42 @@ fn modes_shadings_and_classifiers() {
     cases.push(case("tetrahedron 2d", Settings { transfer: transfer_2d(), ..tetrahedron.clone() }));
     cases.push(case("tetrahedron iso", Settings { mode: iso, ..tetrahedron }));
     check("modes, shadings and classifiers", &volume, cases);
+}
+
+/// The GPU's texels of 8 bits are half floats on software Vulkan, so that they are interpolated as well as the reference's.
+#[test]
+fn gradient_maps() {
+    let formats =
+        [(VoxelType::U8, TexelFormat::Rgba8UnormQuads), (VoxelType::U16, TexelFormat::R16FloatOf16Bit)];
+    let methods = [GradientMethod::CentralDifferences, GradientMethod::Tetrahedron];
+    on_device(|gpu, renderer| {
+        let mut report = Report::default();
+        for ((voxel_type, format), gradient) in
+            formats.into_iter().flat_map(|format| methods.map(|method| (format, method)))
+        {
+            let volume = blob_volume(DIMS, spacing([1.0, 0.8, 1.3]), voxel_type);
+            let uploaded = GpuVolume::upload_as(gpu, &volume, format, &mut |_, _| {}).unwrap();
+            let caster = Caster::with_storage(&volume, storage_kind(format));
+            for (depth, shading) in
+                [(GradientDepth::Bits8, Shading::Phong), (GradientDepth::Bits16, Shading::Shadow)]
+            {
+                let settings = Settings { gradient, shading, transfer: transfer_2d(), ..plain(&volume) };
+                let name = format!("{voxel_type} as {format:?}, {gradient:?}, {depth:?}, {shading:?}");
+                let case = Case { name, format, settings, view: outside() };
+                let parameters = CastParameters::new(&case.settings, &placement(&volume));
+                let map = GradientMap::new(&volume, storage_kind(format), gradient, depth);
+                let held = HeldGradientMap::new(&map);
+                let aids = Aids { gradient_map: Some(&held), ..Aids::default() };
+                let cpu = caster.cast_exactly(&parameters, &aids, &[case.view]).remove(0);
+                let map = GpuGradientMap::new(gpu, &uploaded, gradient, depth).unwrap();
+                let sources = Sources { volume: &uploaded, gradient_map: Some(&map), leap: Leap::Nothing };
+                let prepared = renderer.prepare(gpu, &sources, parameters).unwrap();
+                let found = renderer.render_to_host(gpu, &prepared, &[case.view]).unwrap().remove(0);
+                report.compare(&volume, &case, &cpu, &found);
+            }
+        }
+        report.finish("gradient maps");
+    });
 }
 
 #[test]

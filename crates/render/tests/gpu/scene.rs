@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::reference::{Cast, Caster};
+use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::{Placement, Settings};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::{
@@ -120,7 +120,7 @@ pub(crate) fn cast_on_cpu(
     parameters: &CastParameters,
     views: &[View],
 ) -> Vec<Cast> {
-    Caster::with_storage(volume, storage_kind(format)).cast_exactly(parameters, None, views)
+    Caster::with_storage(volume, storage_kind(format)).cast_exactly(parameters, &Aids::default(), views)
 }
 
 pub(crate) fn cast_on_gpu(

@@ -373,6 +373,22 @@ fn maps_by_value_and_gradient_ask_for_both() {
                 assert!(found.read(gpu).unwrap() == expected.distances(), "{dims:?} {structure:?}");
             }
 
+            let own_map = GradientMap::new(&volume, storage_kind(uploaded.format()), METHODS[i % 2], depth);
+            let own_values = BlockRanges::of_values(&volume, storage_kind(uploaded.format()), block_size);
+            let own_gradients = BlockRanges::of_gradients(&own_map, block_size);
+            let own_occupancy = Occupancy::new(
+                own_values.normalised(map),
+                Some(own_gradients.normalised(own_map.normalised_from_code(map.0))),
+                &visibility,
+            );
+            let blocks = own_occupancy.occupied().len();
+            let others =
+                own_occupancy.occupied().iter().zip(occupancy.occupied()).filter(|(a, b)| a != b).count();
+            assert!(
+                others * 50 <= blocks,
+                "{dims:?}: {others} of {blocks} blocks differ from the reference's"
+            );
+
             // Without gradient ranges any gradient may occur.
             let mut by_value = SkipBuilder::new(gpu, &kernels, &uploaded, block_size).unwrap();
             let found = by_value.map(gpu, &parameters, Structure::Distance).unwrap();
