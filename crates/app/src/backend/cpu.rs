@@ -9,7 +9,9 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap, Leap};
 use wheatstone_core::scene::GradientMethod;
-use wheatstone_core::skip::{BlockRanges, BlockSize, Occupancy, Pace, SkipMap, SkipPlan, Visibility};
+use wheatstone_core::skip::{
+    BlockExtremes, BlockRanges, BlockSize, Occupancy, Pace, SkipMap, SkipPlan, Visibility,
+};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Encoding, StorageKind, Volume};
 
@@ -28,8 +30,15 @@ pub(crate) struct CpuEngine<'v> {
 struct Scene {
     parameters: CastParameters,
     gradients: Option<Rc<Gradients>>,
-    map: Option<SkipMap>,
+    structures: Structures,
     leaping: Leaping,
+}
+
+/// What rays leap over.
+enum Structures {
+    Nothing,
+    Map(SkipMap),
+    Extremes(BlockExtremes),
 }
 
 /// A gradient map, and the same as the caster reads it.
@@ -55,11 +64,11 @@ impl<'v> CpuEngine<'v> {
 
     pub(super) fn prepare(&mut self, parameters: &CastParameters, skipping: &Skipping) -> Shot {
         let gradients = self.gradients(parameters, skipping);
-        let (map, leaping) = match skipping.request.plan(self.storage, Pace::Idle) {
-            None => (None, Leaping::NOTHING),
-            Some(plan) => self.skip_map(parameters, gradients.as_deref(), &plan),
+        let (structures, leaping) = match skipping.request.plan(self.storage, Pace::Idle) {
+            None => (Structures::Nothing, Leaping::NOTHING),
+            Some(plan) => self.structures(parameters, gradients.as_deref(), &plan),
         };
-        self.scenes.push(Scene { parameters: parameters.clone(), gradients, map, leaping });
+        self.scenes.push(Scene { parameters: parameters.clone(), gradients, structures, leaping });
         Shot(self.scenes.len() - 1)
     }
 
@@ -77,20 +86,31 @@ impl<'v> CpuEngine<'v> {
         Some(gradients)
     }
 
-    fn skip_map(
+    fn structures(
         &self,
         parameters: &CastParameters,
         gradients: Option<&Gradients>,
         plan: &SkipPlan,
-    ) -> (Option<SkipMap>, Leaping) {
-        let occupancy = self.occupancy(&self.ranges(gradients, plan.block_size), parameters, gradients);
+    ) -> (Structures, Leaping) {
+        let ranges = self.ranges(gradients, plan.block_size);
+        let values = ranges.values.normalised(self.normalised_from_stored(parameters));
+        if let Some(extremes) = BlockExtremes::new(values, parameters.mode) {
+            let leaping = Leaping::over_idle_blocks(plan, extremes.byte_size() as u64);
+            return (Structures::Extremes(extremes), leaping);
+        }
+        let occupancy = self.occupancy(&ranges, parameters, gradients);
         let occupied_fraction = occupancy.fraction();
         if !plan.pays(occupied_fraction) {
-            return (None, Leaping::not_worth_it(occupied_fraction));
+            return (Structures::Nothing, Leaping::not_worth_it(occupied_fraction));
         }
         let map = SkipMap::new(&occupancy, plan.structure);
         let leaping = Leaping::over_empty_blocks(plan, occupied_fraction, map.byte_size() as u64);
-        (Some(map), leaping)
+        (Structures::Map(map), leaping)
+    }
+
+    /// Scale and offset from the stored numbers to normalised values.
+    fn normalised_from_stored(&self, parameters: &CastParameters) -> (f64, f64) {
+        Encoding::new(self.volume, self.storage).normalised_from_stored(parameters.window)
     }
 
     fn ranges(&self, gradients: Option<&Gradients>, block_size: BlockSize) -> Ranges {
@@ -106,8 +126,7 @@ impl<'v> CpuEngine<'v> {
         parameters: &CastParameters,
         gradients: Option<&Gradients>,
     ) -> Occupancy {
-        let encoding = Encoding::new(self.volume, self.storage);
-        let normalised_from_stored = encoding.normalised_from_stored(parameters.window);
+        let normalised_from_stored = self.normalised_from_stored(parameters);
         let values = ranges.values.normalised(normalised_from_stored);
         let of_gradients = ranges.gradients.as_ref().zip(gradients).map(|(ranges, gradients)| {
             ranges.normalised(gradients.map.normalised_from_code(normalised_from_stored.0))
@@ -164,7 +183,11 @@ impl Scene {
     fn aids(&self) -> Aids<'_> {
         Aids {
             gradient_map: self.gradients.as_deref().map(|gradients| &gradients.held),
-            leap: self.map.as_ref().map_or(Leap::Nothing, Leap::EmptyBlocks),
+            leap: match &self.structures {
+                Structures::Nothing => Leap::Nothing,
+                Structures::Map(map) => Leap::EmptyBlocks(map),
+                Structures::Extremes(extremes) => Leap::IdleBlocks(extremes),
+            },
         }
     }
 }

@@ -76,12 +76,7 @@ impl GpuEngine {
             Some(plan) if matches!(parameters.mode, Mode::Mip | Mode::MinIp) => {
                 let kernels = self.kernels()?;
                 let ranges = GpuBlockRanges::of_values(&self.gpu, &kernels, &self.volume, plan.block_size)?;
-                let leaping = Leaping {
-                    structure: "ranges",
-                    block_size: Some(plan.block_size),
-                    occupied_fraction: None,
-                    bytes: ranges.byte_size(),
-                };
+                let leaping = Leaping::over_idle_blocks(&plan, ranges.byte_size());
                 (Structures::Ranges(ranges), leaping)
             }
             Some(plan) => {

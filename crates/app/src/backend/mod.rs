@@ -105,6 +105,11 @@ impl Leaping {
         }
     }
 
+    /// Over the blocks whose range of values tells that they do not change an extreme.
+    fn over_idle_blocks(plan: &SkipPlan, bytes: u64) -> Self {
+        Self { structure: "ranges", block_size: Some(plan.block_size), occupied_fraction: None, bytes }
+    }
+
     /// The report of a picture whose rays have read the structure so many times.
     pub(crate) fn to_json(&self, map_reads: u64) -> Value {
         json!({

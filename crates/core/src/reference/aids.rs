@@ -1,7 +1,7 @@
 //! What is made of a volume to cast it faster.
 
 use super::gradient_map::HeldGradientMap;
-use crate::skip::SkipMap;
+use crate::skip::{BlockExtremes, SkipMap};
 
 /// What a cast reads besides the voxels. By default nothing.
 #[derive(Debug, Clone, Copy, Default)]
@@ -21,6 +21,8 @@ pub enum Leap<'a> {
     Nothing,
     /// Blocks that are empty by a map made for the same settings.
     EmptyBlocks(&'a SkipMap),
+    /// Blocks whose values cannot better the extreme so far, for maximum and minimum intensity projections.
+    IdleBlocks(&'a BlockExtremes),
 }
 
 impl<'a> From<Leap<'a>> for Aids<'a> {

@@ -25,7 +25,7 @@ impl<C: Classify> Accumulate for Composite<C> {
 
         let mut rgb = Vec3::splat(token, Vec3A::ZERO);
         let (mut transmittance, mut depth_m, mut samples) = (one, infinity, zero);
-        let mut walk = Walk::along(context, token, ray);
+        let mut walk = Walk::along(token, ray, context.skip);
         let needs_previous = C::VALUE_OFFSET != 0.0;
         let mut previous = zero;
         if needs_previous {
@@ -33,7 +33,7 @@ impl<C: Classify> Accumulate for Composite<C> {
         }
         let mut is_transparent = walk.is_active;
         while walk.is_active.any() {
-            walk.leap(token, is_transparent);
+            walk.leap(token, is_transparent, zero);
             if needs_previous && walk.has_leapt.any() {
                 let skipped = context.value_at_outlined(token, ray.at(walk.index + (C::VALUE_OFFSET - 1.0)));
                 samples += L::select(walk.has_leapt, one, zero);

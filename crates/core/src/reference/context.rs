@@ -2,10 +2,11 @@
 
 use super::aids::Leap;
 use super::lanes::Lanes;
-use super::skip::SkipSampler;
+use super::skip::{Distances, SkipSampler};
 use super::vector::Vec3;
 use super::volume::Sampler;
 use crate::cast::{CastParameters, Classifier};
+use crate::skip::BlockExtremes;
 use glam::{Mat3, Vec3A};
 
 /// The volume and the settings, with what they amount to in voxel space.
@@ -16,7 +17,9 @@ pub(super) struct Context<'a> {
     pub(super) gradient_map: Option<Sampler<'a>>,
     pub(super) parameters: &'a CastParameters,
     /// What is empty, if rays are to leap over it.
-    pub(super) skip: Option<SkipSampler<'a>>,
+    pub(super) skip: Option<SkipSampler<Distances<'a>>>,
+    /// The best values of blocks, if rays are to leap over those that have no better one.
+    pub(super) extremes: Option<&'a BlockExtremes>,
     /// Low corner of the visible box.
     box_lo: Vec3A,
     /// High corner of the visible box.
@@ -43,12 +46,19 @@ impl<'a> Context<'a> {
             gradient_map,
             parameters,
             skip: match leap {
-                Leap::Nothing => None,
+                Leap::Nothing | Leap::IdleBlocks(_) => None,
                 Leap::EmptyBlocks(map) => {
                     let is_preintegrated = parameters.classifier == Classifier::PreIntegrated;
                     let step_length = parameters.sampling_factor.recip();
-                    Some(SkipSampler::new(map, parameters.mode, is_preintegrated, step_length))
+                    Some(SkipSampler::over_empty_blocks(map, parameters.mode, is_preintegrated, step_length))
                 }
+            },
+            extremes: match leap {
+                Leap::IdleBlocks(extremes) => {
+                    assert_eq!(extremes.mode(), parameters.mode, "the extremes are those of the mode");
+                    Some(extremes)
+                }
+                Leap::Nothing | Leap::EmptyBlocks(_) => None,
             },
             box_lo: parameters.box_lo * dims,
             box_hi: parameters.box_hi * dims,
@@ -60,7 +70,7 @@ impl<'a> Context<'a> {
 
     /// What is empty, if shading rays are to leap over it. Inside an isosurface there are empty blocks that cast shadows.
     #[inline(always)]
-    pub(super) fn shading_skip(&self) -> Option<SkipSampler<'a>> {
+    pub(super) fn shading_skip(&self) -> Option<SkipSampler<Distances<'a>>> {
         self.skip.filter(|_| self.parameters.classifier != Classifier::Isovalue)
     }
 

@@ -5,14 +5,14 @@ use super::context::Context;
 use super::lanes::{Lanes, Mask};
 use super::lut::lut_at;
 use super::ray::Ray;
-use super::skip::Walk;
+use super::skip::{BlockMap, Extremes, SkipSampler, Walk};
 use std::marker::PhantomData;
 
 /// Keeps the best value.
 pub(super) struct ExtremeValue<B>(PhantomData<B>);
 
 /// Which of two values is kept.
-pub(super) trait Better {
+pub(super) trait Better: Copy {
     /// No value is worse; what the first sample and every skipped one have at least.
     const WORST: f32;
 
@@ -20,6 +20,7 @@ pub(super) trait Better {
 }
 
 /// The larger value.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Maximum;
 
 impl Better for Maximum {
@@ -32,6 +33,7 @@ impl Better for Maximum {
 }
 
 /// The smaller value.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Minimum;
 
 impl Better for Minimum {
@@ -46,12 +48,29 @@ impl Better for Minimum {
 impl<B: Better> Accumulate for ExtremeValue<B> {
     #[inline(always)]
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
+        match context.extremes {
+            None => Self::project(context, token, ray, Walk::along(token, ray, context.skip)),
+            Some(extremes) => {
+                let skip = SkipSampler::<Extremes<'_, B>>::over_idle_blocks(extremes);
+                Self::project(context, token, ray, Walk::along(token, ray, Some(skip)))
+            }
+        }
+    }
+}
+
+impl<B: Better> ExtremeValue<B> {
+    #[inline(always)]
+    fn project<L: Lanes, M: BlockMap>(
+        context: &Context<'_>,
+        token: L::Token,
+        ray: &Ray<L>,
+        mut walk: Walk<M, L>,
+    ) -> Pixels<L> {
         let one = L::splat(token, 1.0);
         let zero = L::splat(token, 0.0);
         let (mut best, mut best_index, mut samples) = (L::splat(token, B::WORST), zero, zero);
-        let mut walk = Walk::along(context, token, ray);
         while walk.is_active.any() {
-            walk.leap(token, walk.is_active);
+            walk.leap(token, walk.is_active, best);
             let value = context.value_at(token, ray.at(walk.index));
             samples += L::select(walk.is_active, one, zero);
             let is_better = walk.is_active & B::is_better(value, best);

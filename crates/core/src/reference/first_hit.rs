@@ -21,11 +21,11 @@ impl Accumulate for FirstHit {
         let isovalue = L::splat(token, context.parameters.isovalue);
         let mut was_in = isovalue.le(context.value_at_outlined(token, ray.at(L::splat(token, -0.5))));
         let mut samples = zero;
-        let mut walk = Walk::along(context, token, ray);
+        let mut walk = Walk::along(token, ray, context.skip);
         let mut is_found = !walk.is_active & walk.is_active;
         while walk.is_active.any() {
             // What is leapt over is on the side that the ray was on.
-            walk.leap(token, walk.is_active);
+            walk.leap(token, walk.is_active, zero);
             let is_in = isovalue.le(context.value_at(token, ray.at(walk.index)));
             samples += L::select(walk.is_active, one, zero);
             let has_crossed = walk.is_active & ((is_in & !was_in) | (was_in & !is_in));

@@ -88,6 +88,8 @@ pub(super) trait Lanes:
     ) -> [[Self; 4]; 4];
     /// Small numbers at places of a table.
     fn bytes(token: Self::Token, table: &[u8], index: Self::Index) -> Self;
+    /// Numbers at places of a table.
+    fn numbers(token: Self::Token, table: &[f32], index: Self::Index) -> Self;
     /// Entries at one place of a table and the logarithms at another.
     fn entries(
         token: Self::Token,

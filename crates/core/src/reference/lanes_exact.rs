@@ -117,6 +117,10 @@ impl Lanes for Exact {
         Self(f64::from(table[index]))
     }
 
+    fn numbers((): (), table: &[f32], index: usize) -> Self {
+        Self(f64::from(table[index]))
+    }
+
     fn entries((): (), table: &[LutEntry], nearest: usize, other: usize) -> ([Self; 4], Self) {
         (table[nearest].map(|number| Self(f64::from(number))), Self(f64::from(table[other][3])))
     }

@@ -182,6 +182,12 @@ impl<S: Simd> Lanes for f32x16<S> {
     }
 
     #[inline(always)]
+    fn numbers(token: S, table: &[f32], index: u32x16<S>) -> Self {
+        let index = index.to_array();
+        Self::load_array(token, each_lane!(lane => table[index[lane] as usize]))
+    }
+
+    #[inline(always)]
     fn entries(token: S, table: &[LutEntry], nearest: u32x16<S>, other: u32x16<S>) -> ([Self; 4], Self) {
         let (nearest, other) = (nearest.to_array(), other.to_array());
         let log2 = each_lane!(lane => table[other[lane] as usize][3]);

@@ -17,7 +17,7 @@ impl<C: Classify> Accumulate for Oracle<C> {
     #[inline(always)]
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-        let mut walk = Walk::along(context, token, ray);
+        let mut walk = Walk::along(token, ray, context.skip);
         let least_transmittance = L::splat(token, 1.0 - context.parameters.termination_alpha);
         let (mut samples, mut runs, mut transmittance) = (zero, zero, one);
         let mut previous = context.value_at(token, ray.at(L::splat(token, C::VALUE_OFFSET - 1.0)));

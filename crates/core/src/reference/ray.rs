@@ -1,7 +1,7 @@
 //! Rays through texture space: where they meet the visible part of the volume, and where they are sampled.
 
 use super::lanes::Lanes;
-use super::skip::{Blocks, SkipSampler};
+use super::skip::{BlockMap, Blocks, SkipSampler};
 use super::vector::Vec3;
 use crate::cast::CastParameters;
 use crate::view::RayField;
@@ -106,7 +106,7 @@ impl<L: Lanes> Ray<L> {
 
     /// Its way through the blocks of a map.
     #[inline(always)]
-    pub(super) fn blocks<'a>(&self, token: L::Token, skip: SkipSampler<'a>) -> Blocks<'a, L> {
+    pub(super) fn blocks<M: BlockMap>(&self, token: L::Token, skip: SkipSampler<M>) -> Blocks<M, L> {
         skip.along(token, self.first, self.step)
     }
 

@@ -77,6 +77,9 @@ impl Caster {
     /// Casts every view on all cores, sixteen rays at once.
     ///
     /// Ray by ray where the machine has no vectors for it (AVX-512, AVX2, NEON), or for more than 2³² voxels.
+    ///
+    /// # Panics
+    /// If rays are to leap by the extremes of another mode.
     pub fn cast(&self, parameters: &CastParameters, aids: &Aids<'_>, views: &[View]) -> Vec<Cast> {
         if u32::try_from(self.voxels.len()).is_err() {
             return self.cast_exactly(parameters, aids, views);
@@ -93,6 +96,9 @@ impl Caster {
     }
 
     /// Casts every view on all cores, ray by ray in double precision: the truth.
+    ///
+    /// # Panics
+    /// As [`Caster::cast`].
     pub fn cast_exactly(&self, parameters: &CastParameters, aids: &Aids<'_>, views: &[View]) -> Vec<Cast> {
         self.cast_on(OneByOne, parameters, aids, views)
     }

@@ -113,7 +113,7 @@ fn transmittance_along<C: Classify, L: Lanes>(
     let mut log2 = zero;
     let mut walk = Walk::new(token, one, L::splat(token, (count + 1) as f32), blocks);
     while walk.is_active.any() {
-        walk.leap(token, walk.is_active);
+        walk.leap(token, walk.is_active, zero);
         let along = step.mul_add(walk.index, position);
         let of_sample = log2_transmittance_inside::<C, L>(context, token, along);
         log2 += L::select(walk.is_active, of_sample, zero);

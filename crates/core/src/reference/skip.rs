@@ -1,12 +1,13 @@
 //! Leaping over empty blocks.
 
-use super::context::Context;
+use super::extreme_value::Better;
 use super::lanes::{Lanes, Mask};
 use super::ray::Ray;
 use super::vector::Vec3;
 use crate::scene::Mode;
-use crate::skip::{SkipMap, Structure};
+use crate::skip::{BlockExtremes, BlockGrid, SkipMap, Structure};
 use glam::Vec3A;
+use std::marker::PhantomData;
 
 /// Steps shorter than this along an axis never leave a block along it; in block units.
 const PARALLEL: f32 = 1e-20;
@@ -15,21 +16,99 @@ const PARALLEL: f32 = 1e-20;
 /// rounding.
 const EDGE: f32 = 1.0 / 1024.0;
 
-/// A skip map as rays in voxel space read it.
+/// What tells how far blocks are from those that may contribute.
+pub(super) trait BlockMap: Copy {
+    /// The blocks.
+    fn grid(&self) -> &BlockGrid;
+
+    /// The octants that rays with a given step go to, if the map tells them apart; else 0.
+    fn octant<L: Lanes>(&self, token: L::Token, step: Vec3<L>) -> L;
+
+    /// Blocks from a block to the nearest one that may contribute to rays of an octant that hold `scalar`; 0 or less if
+    /// this one may.
+    fn empty_distance<L: Lanes>(&self, token: L::Token, block: Vec3<L>, octant: L, scalar: L) -> L;
+}
+
+/// Blocks by their distance from those that may contribute.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SkipSampler<'a> {
+pub(super) struct Distances<'a> {
     map: &'a SkipMap,
-    blocks_from_voxel: Vec3A,
-    last_block: Vec3A,
     /// Distance, in blocks, up to which a block counts as occupied: samples read that much further than their own block.
     margin: f32,
+}
+
+impl BlockMap for Distances<'_> {
+    #[inline(always)]
+    fn grid(&self) -> &BlockGrid {
+        self.map.grid()
+    }
+
+    #[inline(always)]
+    fn octant<L: Lanes>(&self, token: L::Token, step: Vec3<L>) -> L {
+        let zero = L::splat(token, 0.0);
+        match self.map.structure() {
+            Structure::Occupancy | Structure::Distance => zero,
+            Structure::Anisotropic => {
+                let bit = |along: L, bit: f32| L::select(along.lt(zero), L::splat(token, bit), zero);
+                bit(step.x, 1.0) + bit(step.y, 2.0) + bit(step.z, 4.0)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn empty_distance<L: Lanes>(&self, token: L::Token, block: Vec3<L>, octant: L, _: L) -> L {
+        let [columns, rows, slices] = self.map.grid().dims();
+        let in_octants = octant.mul_add(L::splat(token, slices as f32), block.z);
+        let at = L::to_array_index([block.x, block.y, in_octants], columns, columns * rows);
+        L::bytes(token, self.map.distances(), at) - self.margin
+    }
+}
+
+/// Blocks by whether their best value betters the one that a ray holds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extremes<'a, B> {
+    extremes: &'a BlockExtremes,
+    better: PhantomData<B>,
+}
+
+impl<B: Better> BlockMap for Extremes<'_, B> {
+    #[inline(always)]
+    fn grid(&self) -> &BlockGrid {
+        self.extremes.grid()
+    }
+
+    #[inline(always)]
+    fn octant<L: Lanes>(&self, token: L::Token, _: Vec3<L>) -> L {
+        L::splat(token, 0.0)
+    }
+
+    #[inline(always)]
+    fn empty_distance<L: Lanes>(&self, token: L::Token, block: Vec3<L>, _: L, best: L) -> L {
+        let [columns, rows, _] = self.extremes.grid().dims();
+        let at = L::to_array_index([block.x, block.y, block.z], columns, columns * rows);
+        let of_block = L::numbers(token, self.extremes.values(), at);
+        L::select(B::is_better(of_block, best), L::splat(token, 0.0), L::splat(token, 1.0))
+    }
+}
+
+/// A map of blocks as rays in voxel space read it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SkipSampler<M> {
+    map: M,
+    blocks_from_voxel: Vec3A,
+    last_block: Vec3A,
     /// Whether the first sample in an empty block must be taken as well, as it reads what is behind it.
     reads_behind: bool,
 }
 
-impl<'a> SkipSampler<'a> {
+impl<'a> SkipSampler<Distances<'a>> {
     /// Reads a map for rays with the given length of a step, in voxel lengths.
-    pub(super) fn new(map: &'a SkipMap, mode: Mode, is_preintegrated: bool, step_length: f32) -> Self {
+    pub(super) fn over_empty_blocks(
+        map: &'a SkipMap,
+        mode: Mode,
+        is_preintegrated: bool,
+        step_length: f32,
+    ) -> Self {
         let sides = map.grid().block_size().sides();
         let shortest = sides.into_iter().fold(f32::INFINITY, |shortest, side| shortest.min(side as f32));
         // Both ends of a pre-integrated step may be half a voxel, that of the halo, away from the block. Neighbouring
@@ -40,34 +119,40 @@ impl<'a> SkipSampler<'a> {
             _ => 0.0,
         };
         let reads_behind = matches!(mode, Mode::Isosurface { .. }) || margin > 0.0;
+        Self::new(Distances { map, margin: margin.max(0.0) }, reads_behind)
+    }
+}
+
+impl<'a, B: Better> SkipSampler<Extremes<'a, B>> {
+    /// Reads the best values of blocks.
+    pub(super) fn over_idle_blocks(extremes: &'a BlockExtremes) -> Self {
+        Self::new(Extremes { extremes, better: PhantomData }, false)
+    }
+}
+
+impl<M: BlockMap> SkipSampler<M> {
+    fn new(map: M, reads_behind: bool) -> Self {
+        let sides = map.grid().block_size().sides().map(|side| side as f32);
+        let last_block = map.grid().dims().map(|n| (n - 1) as f32);
         Self {
             map,
-            blocks_from_voxel: Vec3A::from(sides.map(|side| side as f32)).recip(),
-            last_block: Vec3A::from(map.grid().dims().map(|n| (n - 1) as f32)),
-            margin: margin.max(0.0),
+            blocks_from_voxel: Vec3A::from(sides).recip(),
+            last_block: last_block.into(),
             reads_behind,
         }
     }
 
     /// Along rays by their first position and step in voxel space.
     #[inline(always)]
-    pub(super) fn along<L: Lanes>(self, token: L::Token, first: Vec3<L>, step: Vec3<L>) -> Blocks<'a, L> {
+    pub(super) fn along<L: Lanes>(self, token: L::Token, first: Vec3<L>, step: Vec3<L>) -> Blocks<M, L> {
         let scale = Vec3::splat(token, self.blocks_from_voxel);
         let step = step.scaled(scale);
-        let octant = match self.map.structure() {
-            Structure::Occupancy | Structure::Distance => L::splat(token, 0.0),
-            Structure::Anisotropic => {
-                let zero = L::splat(token, 0.0);
-                let bit = |along: L, bit: f32| L::select(along.lt(zero), L::splat(token, bit), zero);
-                bit(step.x, 1.0) + bit(step.y, 2.0) + bit(step.z, 4.0)
-            }
-        };
         Blocks {
             sampler: self,
             first: first.scaled(scale),
             step,
             exits: [Exit::new(token, step.x), Exit::new(token, step.y), Exit::new(token, step.z)],
-            octant,
+            octant: self.map.octant(token, step),
         }
     }
 }
@@ -101,8 +186,8 @@ impl<L: Lanes> Exit<L> {
 
 /// Rays through the blocks of a map.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Blocks<'a, L> {
-    sampler: SkipSampler<'a>,
+pub(super) struct Blocks<M, L> {
+    sampler: SkipSampler<M>,
     /// Position of sample 0, block units.
     first: Vec3<L>,
     /// From one sample to the next, block units.
@@ -120,18 +205,15 @@ pub(super) struct Look<L: Lanes> {
     pub(super) steps: L,
 }
 
-impl<L: Lanes> Blocks<'_, L> {
-    /// Looks the blocks of samples up (DM Eq. 14; Eq. 7 for occupied ones).
+impl<M: BlockMap, L: Lanes> Blocks<M, L> {
+    /// Looks the blocks of samples up, for rays that hold `scalar` (DM Eq. 14; Eq. 7 for occupied ones).
     #[inline(always)]
-    pub(super) fn look(&self, token: L::Token, index: L) -> Look<L> {
-        let SkipSampler { map, last_block, margin, .. } = self.sampler;
+    pub(super) fn look(&self, token: L::Token, index: L, scalar: L) -> Look<L> {
+        let SkipSampler { map, last_block, .. } = self.sampler;
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let position = self.step.mul_add(index, self.first);
         let block = position.floor().max(Vec3::splat(token, Vec3A::ZERO)).min(Vec3::splat(token, last_block));
-        let [columns, rows, slices] = map.grid().dims();
-        let in_octants = self.octant.mul_add(L::splat(token, slices as f32), block.z);
-        let at = L::to_array_index([block.x, block.y, in_octants], columns, columns * rows);
-        let distance = L::bytes(token, map.distances(), at) - margin;
+        let distance = map.empty_distance(token, block, self.octant, scalar);
         let reach = distance.max(one) - (0.5 + EDGE);
         let [x, y, z] = &self.exits;
         let steps = x
@@ -144,7 +226,7 @@ impl<L: Lanes> Blocks<'_, L> {
 
 /// Where the rays of a packet are; each goes at its own pace.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Walk<'a, L: Lanes> {
+pub(super) struct Walk<M, L: Lanes> {
     /// The next sample.
     pub(super) index: L,
     /// Which rays go on.
@@ -156,15 +238,15 @@ pub(super) struct Walk<'a, L: Lanes> {
     /// For which rays the sample before was in an occupied block, or in one that was not looked up.
     comes_from_occupied: L::Mask,
     end: L,
-    blocks: Option<Blocks<'a, L>>,
+    blocks: Option<Blocks<M, L>>,
     /// Reads of the map.
     pub(super) map_reads: L,
 }
 
-impl<'a, L: Lanes> Walk<'a, L> {
+impl<M: BlockMap, L: Lanes> Walk<M, L> {
     /// From sample `first` up to `end`, which is left out.
     #[inline(always)]
-    pub(super) fn new(token: L::Token, first: L, end: L, blocks: Option<Blocks<'a, L>>) -> Self {
+    pub(super) fn new(token: L::Token, first: L, end: L, blocks: Option<Blocks<M, L>>) -> Self {
         let is_active = first.lt(end);
         Self {
             index: first,
@@ -180,17 +262,18 @@ impl<'a, L: Lanes> Walk<'a, L> {
 
     /// Over all samples of rays.
     #[inline(always)]
-    pub(super) fn along(context: &Context<'a>, token: L::Token, ray: &Ray<L>) -> Self {
-        let blocks = context.skip.map(
+    pub(super) fn along(token: L::Token, ray: &Ray<L>, skip: Option<SkipSampler<M>>) -> Self {
+        let blocks = skip.map(
             #[inline(always)]
             |skip| ray.blocks(token, skip),
         );
         Self::new(token, L::splat(token, 0.0), ray.sample_count, blocks)
     }
 
-    /// Moves rays that have left their block, of those that may leap, to the next sample that may contribute.
+    /// Moves rays that have left their block, of those that may leap, to the next sample that may contribute to what they
+    /// hold, `scalar`.
     #[inline(always)]
-    pub(super) fn leap(&mut self, token: L::Token, may_leap: L::Mask) {
+    pub(super) fn leap(&mut self, token: L::Token, may_leap: L::Mask, scalar: L) {
         let Some(blocks) = &self.blocks else { return };
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let has_left = self.leave.le(self.index);
@@ -198,7 +281,7 @@ impl<'a, L: Lanes> Walk<'a, L> {
         self.comes_from_occupied = self.comes_from_occupied | (has_left & !looks);
         self.has_leapt = looks & !looks;
         while looks.any() {
-            let look = blocks.look(token, self.index);
+            let look = blocks.look(token, self.index, scalar);
             self.map_reads += L::select(looks, one, zero);
             let next = self.index + look.steps;
             let mut leaps = looks & look.is_empty;

@@ -41,9 +41,9 @@ impl<P: Projection> Accumulate for ValueSum<P> {
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let (mut sum, mut samples) = (zero, zero);
-        let mut walk = Walk::along(context, token, ray);
+        let mut walk = Walk::along(token, ray, context.skip);
         while walk.is_active.any() {
-            walk.leap(token, walk.is_active);
+            walk.leap(token, walk.is_active, zero);
             sum += L::select(walk.is_active, context.value_at(token, ray.at(walk.index)), zero);
             samples += L::select(walk.is_active, one, zero);
             walk.advance();

@@ -8,6 +8,7 @@
 //! DM is Deakin and Knackstedt 2020, “Efficient ray casting of volumetric images using distance maps for empty space
 //! skipping”.
 
+mod block_extremes;
 mod block_grid;
 mod block_ranges;
 mod block_size;
@@ -22,6 +23,7 @@ mod steps;
 mod visibility;
 mod voxel_occupancy;
 
+pub use block_extremes::BlockExtremes;
 pub use block_grid::BlockGrid;
 pub use block_ranges::BlockRanges;
 pub use block_size::{BlockSize, SkipError};

@@ -7,7 +7,9 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap, Leap};
 use wheatstone_core::scene::{GradientMethod, Mode, Placement, Settings, Shading};
-use wheatstone_core::skip::{BlockRanges, BlockSize, Occupancy, SkipMap, Structure, Visibility};
+use wheatstone_core::skip::{
+    BlockExtremes, BlockRanges, BlockSize, Occupancy, SkipMap, Structure, Visibility,
+};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Encoding, Grid, StorageKind, Volume, Voxels};
@@ -193,6 +195,16 @@ fn assert_skipping_changes_nothing(
         let skipped = bits(&caster.cast_exactly(&parameters, &aids, &[view])[0]);
         prop_assert!(skipped == whole_exactly, "{:?}, f64 lane", structure);
     }
+    let normalised = Encoding::new(volume, *kind).normalised_from_stored(parameters.window);
+    let ranges = BlockRanges::of_values(volume, *kind, size);
+    let extremes = BlockExtremes::new(ranges.normalised(normalised), parameters.mode);
+    prop_assert_eq!(extremes.is_some(), matches!(parameters.mode, Mode::Mip | Mode::MinIp));
+    if let Some(extremes) = extremes {
+        let aids = Aids { leap: Leap::IdleBlocks(&extremes), ..plain };
+        prop_assert!(bits(&caster.cast(&parameters, &aids, &[view])[0]) == whole, "extremes, f32 lanes");
+        let skipped = bits(&caster.cast_exactly(&parameters, &aids, &[view])[0]);
+        prop_assert!(skipped == whole_exactly, "extremes, f64 lane");
+    }
     Ok(())
 }
 
@@ -211,6 +223,16 @@ proptest! {
     }
 
     #[test]
+    fn extremes_of_blocks_change_nothing(
+        volume in sparse_volumes(prop_oneof![1 => 1_usize..4, 3 => 5_usize..32]),
+        settings in projections(),
+        view in views(),
+        sides in prop::array::uniform3(prop_oneof![2_u32..5, 2_u32..=16]),
+    ) {
+        assert_skipping_changes_nothing(&volume, settings, None, view, sides)?;
+    }
+
+    #[test]
     fn skipping_changes_nothing_for_samples_that_read_behind_them(
         volume in sparse_volumes(12_usize..28),
         settings in looks_behind(),
@@ -219,6 +241,17 @@ proptest! {
     ) {
         assert_skipping_changes_nothing(&volume, settings, None, view, [side; 3])?;
     }
+}
+
+/// Projections of an extreme.
+fn projections() -> impl Strategy<Value = Settings> {
+    let mode = prop::sample::select(vec![Mode::Mip, Mode::MinIp]);
+    let factor = prop::sample::select(vec![0.3_f32, 1.0, 2.5]);
+    (gapped_transfers(), mode, factor).prop_map(|(transfer, mode, sampling_factor)| Settings {
+        mode,
+        sampling_factor,
+        ..Settings::new(unit_window(), transfer)
+    })
 }
 
 /// A slab in faint noise, wherever it is among the blocks and the samples.
@@ -287,4 +320,34 @@ fn skipping_saves_samples_and_a_better_map_reads() {
     });
     assert!(costs[1] < costs[0], "distances leap further than single blocks: {costs:?}");
     assert!(costs[2] <= costs[1], "distances in one octant are no shorter: {costs:?}");
+}
+
+#[test]
+fn projections_leap_over_what_is_no_better() {
+    let size = [64, 64];
+    let volume = wheatstone_core::phantom::Phantom::Beetle.volume([64; 3]).unwrap();
+    let kind = StorageKind::lossless_for(&volume);
+    let view = look(DVec3::new(0.3, 0.5, 1.5), DVec3::ZERO, DVec3::Y, perspective(0.5, size), size);
+    let caster = Caster::with_storage(&volume, kind);
+    let ranges = BlockRanges::of_values(&volume, kind, BlockSize::cube(4).unwrap());
+    for mode in [Mode::Mip, Mode::MinIp] {
+        let transfer = TransferFunction::ramp(0.0, 1.0).unwrap();
+        let settings = Settings { mode, ..exact_settings(volume.full_window(), transfer) };
+        let parameters = CastParameters::new(&settings, &Placement::new(&volume, world_from_patient()));
+        let normalised = Encoding::new(&volume, kind).normalised_from_stored(parameters.window);
+        let extremes = BlockExtremes::new(ranges.normalised(normalised), mode).unwrap();
+        let leap = Leap::IdleBlocks(&extremes).into();
+        for (exactly, whole) in [
+            (false, caster.cast(&parameters, &Aids::default(), &[view]).remove(0)),
+            (true, caster.cast_exactly(&parameters, &Aids::default(), &[view]).remove(0)),
+        ] {
+            let leapt = if exactly {
+                caster.cast_exactly(&parameters, &leap, &[view]).remove(0)
+            } else {
+                caster.cast(&parameters, &leap, &[view]).remove(0)
+            };
+            assert!(bits(&leapt) == bits(&whole), "{mode:?}");
+            assert!(leapt.map_reads > 0 && leapt.samples * 2 < whole.samples, "{mode:?}: {}", leapt.samples);
+        }
+    }
 }
