@@ -149,7 +149,7 @@ impl<'v> CpuEngine<'v> {
         &self.scenes[shot.0].leaping
     }
 
-    pub(super) fn gradient_map(&self, shot: Shot) -> Option<GradientMapSize> {
+    pub(super) fn gradient_map_size(&self, shot: Shot) -> Option<GradientMapSize> {
         let map = &self.scenes[shot.0].gradients.as_ref()?.map;
         Some(GradientMapSize { depth: map.depth(), bytes: map.byte_size() as u64 })
     }

@@ -185,7 +185,7 @@ impl GpuEngine {
         &self.scenes[shot.0].leaping
     }
 
-    pub(super) fn gradient_map(&self, shot: Shot) -> Option<GradientMapSize> {
+    pub(super) fn gradient_map_size(&self, shot: Shot) -> Option<GradientMapSize> {
         self.scenes[shot.0].gradient_map
     }
 

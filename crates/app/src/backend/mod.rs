@@ -229,10 +229,10 @@ impl<'v> Engine<'v> {
     }
 
     /// The gradient map that a shot looks magnitudes up in, if it does.
-    pub(crate) fn gradient_map(&self, shot: Shot) -> Option<GradientMapSize> {
+    pub(crate) fn gradient_map_size(&self, shot: Shot) -> Option<GradientMapSize> {
         match self {
-            Self::Gpu(engine) => engine.gradient_map(shot),
-            Self::Cpu(engine) => engine.gradient_map(shot),
+            Self::Gpu(engine) => engine.gradient_map_size(shot),
+            Self::Cpu(engine) => engine.gradient_map_size(shot),
         }
     }
 

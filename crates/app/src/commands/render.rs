@@ -160,7 +160,7 @@ impl RenderArgs {
             map_reads: 0,
             white: None,
             leaping: engine.leaping(shot).clone(),
-            gradient_map: engine.gradient_map(shot),
+            gradient_map: engine.gradient_map_size(shot),
             picture_size: [0; 2],
             outputs: Vec::new(),
         };

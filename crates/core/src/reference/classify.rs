@@ -22,6 +22,9 @@ pub(super) trait Classify {
     /// Where on the ray, counted in steps from a sample's middle, the value that classifies it is taken.
     const VALUE_OFFSET: f32 = 0.0;
 
+    /// Whether an empty block lets all light through. Else it lets all or none through.
+    const EMPTY_IS_CLEAR: bool = true;
+
     /// Whether a sample may be visible, from its value and the one before it on the ray.
     #[inline(always)]
     fn may_be_visible<L: Lanes>(context: &Context<'_>, token: L::Token, value: L, previous: L) -> L::Mask {
@@ -114,6 +117,8 @@ impl Classify for PreIntegrated {
 pub(super) struct Isovalue;
 
 impl Classify for Isovalue {
+    const EMPTY_IS_CLEAR: bool = false;
+
     #[inline(always)]
     fn may_be_visible<L: Lanes>(context: &Context<'_>, token: L::Token, value: L, _: L) -> L::Mask {
         L::splat(token, context.parameters.isovalue).le(value)

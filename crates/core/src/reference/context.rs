@@ -5,9 +5,12 @@ use super::lanes::Lanes;
 use super::skip::{Distances, SkipSampler};
 use super::vector::Vec3;
 use super::volume::Sampler;
-use crate::cast::{CastParameters, Classifier};
+use crate::cast::{CastParameters, Classifier, SHADING_STEP};
 use crate::skip::BlockExtremes;
 use glam::{Mat3, Vec3A};
+
+/// Length of a step of a shading ray that is traced, voxel lengths, and more than rounding may make of it.
+const LONGEST_SHADING_STEP: f32 = 1.001 * SHADING_STEP;
 
 /// The volume and the settings, with what they amount to in voxel space.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +21,8 @@ pub(super) struct Context<'a> {
     pub(super) parameters: &'a CastParameters,
     /// What is empty, if rays are to leap over it.
     pub(super) skip: Option<SkipSampler<Distances<'a>>>,
+    /// The same for shading rays.
+    pub(super) shading_skip: Option<SkipSampler<Distances<'a>>>,
     /// The best values of blocks, if rays are to leap over those that have no better one.
     pub(super) extremes: Option<&'a BlockExtremes>,
     /// Low corner of the visible box.
@@ -40,18 +45,23 @@ impl<'a> Context<'a> {
         leap: Leap<'a>,
     ) -> Self {
         let dims = sampler.dims();
+        let skip_for = |step_length: f32| match leap {
+            Leap::Nothing | Leap::IdleBlocks(_) => None,
+            Leap::EmptyBlocks(map) => {
+                let is_preintegrated = parameters.classifier == Classifier::PreIntegrated;
+                Some(SkipSampler::over_empty_blocks(map, parameters.mode, is_preintegrated, step_length))
+            }
+        };
+        let skip = skip_for(parameters.sampling_factor.recip());
         let voxel_from_metric = Mat3::from_diagonal(dims.into()) * parameters.texture_from_metric;
         Self {
             sampler,
             gradient_map,
             parameters,
-            skip: match leap {
-                Leap::Nothing | Leap::IdleBlocks(_) => None,
-                Leap::EmptyBlocks(map) => {
-                    let is_preintegrated = parameters.classifier == Classifier::PreIntegrated;
-                    let step_length = parameters.sampling_factor.recip();
-                    Some(SkipSampler::over_empty_blocks(map, parameters.mode, is_preintegrated, step_length))
-                }
+            skip,
+            shading_skip: match parameters.classifier {
+                Classifier::Isovalue => skip_for(LONGEST_SHADING_STEP),
+                Classifier::Value | Classifier::ValueGradient | Classifier::PreIntegrated => skip,
             },
             extremes: match leap {
                 Leap::IdleBlocks(extremes) => {
@@ -66,12 +76,6 @@ impl<'a> Context<'a> {
             voxel_from_metric,
             metric_from_voxel_gradient: voxel_from_metric.transpose(),
         }
-    }
-
-    /// What is empty, if shading rays are to leap over it. Inside an isosurface there are empty blocks that cast shadows.
-    #[inline(always)]
-    pub(super) fn shading_skip(&self) -> Option<SkipSampler<Distances<'a>>> {
-        self.skip.filter(|_| self.parameters.classifier != Classifier::Isovalue)
     }
 
     /// The normalised value at a position in voxel space.

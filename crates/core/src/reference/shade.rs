@@ -71,20 +71,21 @@ fn phong<L: Lanes>(
     rgb.mul_add(matte, Vec3 { x: highlight, y: highlight, z: highlight })
 }
 
-/// Log2 transmittance of one voxel length, 0 outside the visible part of the volume.
+/// Log2 transmittance of one voxel length, 0 outside the visible part of the volume; and whether it would be 0 without
+/// that limit, too.
 #[inline(always)]
 fn log2_transmittance_inside<C: Classify, L: Lanes>(
     context: &Context<'_>,
     token: L::Token,
     position: Vec3<L>,
-) -> L {
+) -> (L, L::Mask) {
     L::outlined(
         token,
         #[inline(always)]
         || {
-            let is_inside = context.is_inside(token, position);
+            let zero = L::splat(token, 0.0);
             let log2 = C::log2_transmittance_at(context, token, position);
-            L::select(is_inside, log2, L::splat(token, 0.0))
+            (L::select(context.is_inside(token, position), log2, zero), zero.le(log2))
         },
     )
 }
@@ -97,6 +98,9 @@ fn shadow<C: Classify, L: Lanes>(context: &Context<'_>, token: L::Token, positio
 }
 
 /// Sum of the log2 transmittances of one voxel length at equal steps from a position.
+///
+/// Blocks without a surface are clear or opaque as the sample before them is: [`Walk`] takes the first sample in them, and
+/// only from a clear one rays leap on.
 #[inline(always)]
 fn transmittance_along<C: Classify, L: Lanes>(
     context: &Context<'_>,
@@ -106,17 +110,21 @@ fn transmittance_along<C: Classify, L: Lanes>(
     count: u32,
 ) -> L {
     let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-    let blocks = context.shading_skip().map(
+    let blocks = context.shading_skip.filter(|_| C::EMPTY_IS_CLEAR || count > 1).map(
         #[inline(always)]
         |skip| skip.along(token, position, step),
     );
     let mut log2 = zero;
     let mut walk = Walk::new(token, one, L::splat(token, (count + 1) as f32), blocks);
+    let mut may_leap = walk.is_active;
     while walk.is_active.any() {
-        walk.leap(token, walk.is_active, zero);
+        walk.leap(token, may_leap, zero);
         let along = step.mul_add(walk.index, position);
-        let of_sample = log2_transmittance_inside::<C, L>(context, token, along);
+        let (of_sample, is_clear) = log2_transmittance_inside::<C, L>(context, token, along);
         log2 += L::select(walk.is_active, of_sample, zero);
+        if !C::EMPTY_IS_CLEAR {
+            may_leap = is_clear;
+        }
         walk.advance();
     }
     log2
