@@ -3,20 +3,18 @@
 use super::BlockSize;
 use crate::cast::{CastParameters, Classifier};
 
-/// How far from its block a sample may be classified, voxels: what the halo of one voxel allows.
-const HALO_SLACK_VOXELS: f64 = 0.5;
-
-/// Blocks by which distances are shortened, so that a leap ends before the first sample that reaches into an occupied
-/// block: 0 but for sampling factors below 1, where steps are longer than a voxel. A pre-integrated sample reaches half a
-/// step to either side of its middle, that of an isosurface to the sample before it.
+/// Blocks by which distances are shortened: up to that distance a block counts as occupied, because samples read so much
+/// further than their own block. 0 but for sampling factors below 1, where steps are longer than a voxel.
+///
+/// Both ends of a pre-integrated step may be half a voxel, that of the halo, away from the block. Neighbouring samples in empty
+/// blocks are on the same side of an isovalue if the blocks touch.
 pub fn margin_blocks(parameters: &CastParameters, block_size: BlockSize) -> u32 {
     let step_voxels = 1.0 / f64::from(parameters.sampling_factor);
-    let reach_voxels = match parameters.classifier {
+    let shortest_side = f64::from(block_size.sides().into_iter().min().unwrap_or(1));
+    let blocks = match parameters.classifier {
         Classifier::Value | Classifier::ValueGradient => 0.0,
-        Classifier::PreIntegrated => 0.5 * step_voxels - HALO_SLACK_VOXELS,
-        Classifier::Isovalue if step_voxels <= 1.0 => 0.0,
-        Classifier::Isovalue => step_voxels,
+        Classifier::PreIntegrated => (0.5 * (step_voxels - 1.0) / shortest_side).ceil(),
+        Classifier::Isovalue => (step_voxels / shortest_side).ceil() - 1.0,
     };
-    let shortest_side = block_size.sides().into_iter().min().unwrap_or(1);
-    (reach_voxels / f64::from(shortest_side)).ceil().max(0.0) as u32
+    blocks.max(0.0) as u32
 }

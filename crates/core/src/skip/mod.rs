@@ -3,7 +3,7 @@
 //! The volume is cut into *blocks*. Once per volume, [`BlockRanges`] holds the interval of the values (and of the gradient
 //! magnitudes) that a trilinear sample in each block can have. Once per change of the settings, [`Visibility`] tells which
 //! intervals can contribute to a picture, [`Occupancy`] which blocks can, and [`SkipMap`] how far each block is from the
-//! nearest one that can. No voxel is read again. A ray then leaps by [`steps_out_of`].
+//! nearest one that can. No voxel is read again. A ray then leaps out of the blocks that are nearer (DM Eq. 14).
 //!
 //! DM is Deakin and Knackstedt 2020, “Efficient ray casting of volumetric images using distance maps for empty space
 //! skipping”.
@@ -19,7 +19,6 @@ mod margin;
 mod occupancy;
 mod range_codes;
 mod skip_map;
-mod steps;
 mod visibility;
 mod voxel_occupancy;
 
@@ -32,6 +31,5 @@ pub use margin::margin_blocks;
 pub use occupancy::{NormalisedRanges, Occupancy};
 pub use range_codes::RangeCodes;
 pub use skip_map::{OCTANTS, SkipMap, Structure};
-pub use steps::steps_out_of;
 pub use visibility::{SecondAxis, Visibility};
 pub use voxel_occupancy::voxel_occupancy;

@@ -1,5 +1,5 @@
-//! Empty-space skipping against brute force: what blocks hold, what can be seen, how far the next occupied block is, and
-//! how many samples a ray may leave out.
+//! Empty-space skipping against brute force: what blocks hold, what can be seen, and how far the next
+//! occupied block is.
 
 #![expect(clippy::unwrap_used, reason = "all of this crate is test code")]
 
@@ -8,4 +8,3 @@ mod gradients;
 mod occupancy;
 mod ranges;
 mod scene;
-mod steps;
