@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use wheatstone_core::cast::{CastParameters, Classifier};
 use wheatstone_core::gradient_map::GradientDepth;
-use wheatstone_core::skip::{BlockSize, Pace, Skip, SkipPlan, SkipRequest};
+use wheatstone_core::skip::{BlockSize, Skip, SkipHost, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::volume::StorageKind;
 
 /// Flags of empty-space skipping.
@@ -132,27 +132,46 @@ impl StructureBytes {
     }
 }
 
-/// What each structure takes by default for a volume held in a precision: the three maps, and the ranges that the default
-/// one is made from.
+/// What each structure takes by default on a GPU (on the CPU it is no more) for a volume held in a precision: the three
+/// maps, and of the default one the ranges of values that it is made from, those of gradients, and the room to work it out
+/// in. A tenth of a volume of a few voxels has no room for any.
 pub(crate) fn structures(dims: [usize; 3], storage: StorageKind) -> Vec<StructureBytes> {
-    let volume_bytes = (dims.iter().product::<usize>() * storage.byte_size()) as f64;
+    let volume_bytes = dims.iter().product::<usize>() * storage.byte_size();
     let row = |name, plan: &SkipPlan, bytes: usize| StructureBytes {
         name,
         side: plan.block_size.sides()[0],
         bytes,
-        part_of_volume: bytes as f64 / volume_bytes,
+        part_of_volume: bytes as f64 / volume_bytes as f64,
     };
-    let plan = |skip| SkipRequest { skip, block_size: None }.plan(storage, Pace::Idle);
-    let ranges = plan(Skip::Auto).map(|plan| row("ranges", &plan, plan.ranges_byte_size(dims)));
-    let maps = [Skip::Occupancy, Skip::Distance, Skip::Anisotropic]
-        .into_iter()
-        .filter_map(plan)
-        .map(|plan| row(structure_name(plan.structure), &plan, plan.byte_size(dims)));
-    ranges.into_iter().chain(maps).collect()
+    let host = SkipHost::ANY_GPU;
+    let plan = |skip| SkipRequest { skip, block_size: None }.plan(dims, storage, host);
+    let default = plan(Skip::Auto).into_iter().flat_map(|plan| {
+        let ranges = plan.ranges_byte_size(dims);
+        [("ranges", ranges), ("gradient_ranges", ranges), ("working", plan.working_byte_size(dims, host))]
+            .map(|(name, bytes)| row(name, &plan, bytes))
+    });
+    let maps = [
+        (Skip::Occupancy, Structure::Occupancy),
+        (Skip::Distance, Structure::Distance),
+        (Skip::Anisotropic, Structure::Anisotropic),
+    ]
+    .into_iter()
+    .filter_map(|(skip, structure)| plan(skip).filter(|plan| plan.structure == structure))
+    .map(|plan| row(structure_name(plan.structure), &plan, plan.byte_size(dims)));
+    default.chain(maps).collect()
+}
+
+/// Bytes of a gradient map, which is made for two-dimensional transfer functions: those of a second volume, of at most 16
+/// bits.
+pub(crate) fn gradient_map_bytes(dims: [usize; 3], storage: StorageKind) -> usize {
+    dims.iter().product::<usize>() * storage.byte_size().min(2)
 }
 
 /// Structures in one line.
 pub(crate) fn described(structures: &[StructureBytes]) -> String {
+    if structures.is_empty() {
+        return "too few voxels to skip any".to_owned();
+    }
     let described = |s: &StructureBytes| {
         let kibibytes = s.bytes as f64 / 1024.0;
         format!("{} {kibibytes:.0} KiB ({:.1} %, {}³)", s.name, 100.0 * s.part_of_volume, s.side)

@@ -2,7 +2,7 @@
 
 use crate::gpu::{Gpu, GpuError};
 use crate::kernel::{Kernel, KernelFiles};
-use crate::layers::copy_layers;
+use crate::layers::{PaddedRows, copy_layers};
 use crate::readback::{read_buffer, read_texture};
 use crate::skip::VoxelTexture;
 use crate::volume::{GpuVolume, TexelFormat, byte_size, check_size, extent};
@@ -258,13 +258,14 @@ impl<'a> GradientPass<'a> {
         gpu.check()?;
         let group = self.bind(gpu, &kernel, &slab);
         let words = (width * format.byte_size()).div_ceil(4);
+        let rows = PaddedRows { buffer: &slab, first_byte: 0, row_bytes };
         for first_slice in (0..depth).step_by(slab_slices) {
             let slices = slab_slices.min(depth - first_slice);
             let normalised_per_magnitude = if largest > 0.0 { largest.recip() } else { 0.0 };
             let uniform = GradientUniform { normalised_per_magnitude, ..self.slab(first_slice, slices) };
             self.run(gpu, uniform, |encoder| {
                 kernel.dispatch(encoder, &group, [words, height, slices].map(|side| side as u32));
-                copy_layers(encoder, &slab, row_bytes, &texture, first_slice..first_slice + slices);
+                copy_layers(encoder, &rows, &texture, first_slice..first_slice + slices);
             })?;
         }
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))

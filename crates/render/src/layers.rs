@@ -2,20 +2,29 @@
 
 use std::ops::Range;
 
-/// Copies whole layers of a texture from the start of a buffer of rows padded to `row_bytes`.
+/// Rows in a buffer, one after the other.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PaddedRows<'a> {
+    pub(crate) buffer: &'a wgpu::Buffer,
+    /// Where the first row begins.
+    pub(crate) first_byte: usize,
+    /// From a row to the next: a multiple of 256.
+    pub(crate) row_bytes: usize,
+}
+
+/// Copies whole layers of a texture from rows.
 pub(crate) fn copy_layers(
     encoder: &mut wgpu::CommandEncoder,
-    buffer: &wgpu::Buffer,
-    row_bytes: usize,
+    rows: &PaddedRows<'_>,
     texture: &wgpu::Texture,
     layers: Range<usize>,
 ) {
     encoder.copy_buffer_to_texture(
         wgpu::TexelCopyBufferInfo {
-            buffer,
+            buffer: rows.buffer,
             layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(row_bytes as u32),
+                offset: rows.first_byte as u64,
+                bytes_per_row: Some(rows.row_bytes as u32),
                 rows_per_image: Some(texture.height()),
             },
         },

@@ -10,7 +10,7 @@ use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap, Leap};
 use wheatstone_core::scene::GradientMethod;
 use wheatstone_core::skip::{
-    BlockExtremes, BlockRanges, BlockSize, Occupancy, Pace, SkipMap, SkipPlan, Visibility,
+    BlockExtremes, BlockRanges, BlockSize, Occupancy, SkipHost, SkipMap, SkipPlan, SkipRequest, Visibility,
 };
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Encoding, StorageKind, Volume};
@@ -54,6 +54,12 @@ struct Ranges {
     gradients: Option<BlockRanges>,
 }
 
+impl Ranges {
+    fn byte_size(&self) -> usize {
+        self.values.byte_size() + self.gradients.as_ref().map_or(0, BlockRanges::byte_size)
+    }
+}
+
 impl<'v> CpuEngine<'v> {
     pub(super) fn new(volume: &'v Volume, storage: StorageKind) -> Self {
         let start = Instant::now();
@@ -64,12 +70,16 @@ impl<'v> CpuEngine<'v> {
 
     pub(super) fn prepare(&mut self, parameters: &CastParameters, skipping: &Skipping) -> Shot {
         let gradients = self.gradients(parameters, skipping);
-        let (structures, leaping) = match skipping.request.plan(self.storage, Pace::Idle) {
+        let (structures, leaping) = match self.plan(skipping.request) {
             None => (Structures::Nothing, Leaping::NOTHING),
             Some(plan) => self.structures(parameters, gradients.as_deref(), &plan),
         };
         self.scenes.push(Scene { parameters: parameters.clone(), gradients, structures, leaping });
         Shot(self.scenes.len() - 1)
+    }
+
+    pub(super) fn plan(&self, request: SkipRequest) -> Option<SkipPlan> {
+        request.plan(self.volume.grid().dims(), self.storage, SkipHost::Cpu)
     }
 
     /// The gradient map that the settings look gradients up in, if they do; the last one is kept.
@@ -104,7 +114,12 @@ impl<'v> CpuEngine<'v> {
             return (Structures::Nothing, Leaping::not_worth_it(occupied_fraction));
         }
         let map = SkipMap::new(&occupancy, plan.structure);
-        let leaping = Leaping::over_empty_blocks(plan, occupied_fraction, map.byte_size() as u64);
+        let working_bytes = plan.working_byte_size(self.volume.grid().dims(), SkipHost::Cpu);
+        let leaping = Leaping {
+            ranges_bytes: ranges.byte_size() as u64,
+            working_bytes: working_bytes as u64,
+            ..Leaping::over_empty_blocks(plan, occupied_fraction, map.byte_size() as u64)
+        };
         (Structures::Map(map), leaping)
     }
 

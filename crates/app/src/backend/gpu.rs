@@ -8,7 +8,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{GradientMethod, Mode};
-use wheatstone_core::skip::{BlockGrid, BlockSize, OCTANTS, Pace, SkipPlan, Structure};
+use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, GpuSkipMap, SkipBuilder, SkipKernels};
@@ -71,7 +71,7 @@ impl GpuEngine {
         skipping: &Skipping,
     ) -> Result<Shot, GpuError> {
         let gradient_map = self.gradient_map(parameters, skipping)?;
-        let (structures, leaping) = match skipping.request.plan(self.storage, Pace::Idle) {
+        let (structures, leaping) = match self.plan(skipping.request) {
             None => (Structures::Nothing, Leaping::NOTHING),
             Some(plan) if matches!(parameters.mode, Mode::Mip | Mode::MinIp) => {
                 let kernels = self.kernels()?;
@@ -79,10 +79,7 @@ impl GpuEngine {
                 let leaping = Leaping::over_idle_blocks(&plan, ranges.byte_size());
                 (Structures::Ranges(ranges), leaping)
             }
-            Some(plan) => {
-                let plan = self.within_limits(plan);
-                self.skip_map(parameters, gradient_map.as_ref(), &plan)?
-            }
+            Some(plan) => self.skip_map(parameters, gradient_map.as_ref(), &plan)?,
         };
         let leap = match &structures {
             Structures::Nothing => Leap::Nothing,
@@ -97,15 +94,8 @@ impl GpuEngine {
         Ok(Shot(self.scenes.len() - 1))
     }
 
-    /// The octants of an anisotropic map are stacked: where the device has no texture of that depth, one map serves them all.
-    fn within_limits(&self, plan: SkipPlan) -> SkipPlan {
-        let blocks = BlockGrid::new(self.volume.dims(), plan.block_size).dims();
-        let is_too_deep = blocks[2] * OCTANTS > self.gpu.capabilities().largest_3d_side as usize;
-        if plan.structure == Structure::Anisotropic && is_too_deep {
-            plan.with_structure(Structure::Distance)
-        } else {
-            plan
-        }
+    pub(super) fn plan(&self, request: SkipRequest) -> Option<SkipPlan> {
+        request.plan(self.volume.dims(), self.storage, self.gpu.capabilities().skip_host())
     }
 
     fn skip_map(
@@ -123,7 +113,11 @@ impl GpuEngine {
         if !plan.pays(occupied_fraction) {
             return Ok((Structures::Nothing, Leaping::not_worth_it(occupied_fraction)));
         }
-        let leaping = Leaping::over_empty_blocks(plan, occupied_fraction, map.byte_size());
+        let leaping = Leaping {
+            ranges_bytes: builder.ranges_byte_size(),
+            working_bytes: builder.working_byte_size(),
+            ..Leaping::over_empty_blocks(plan, occupied_fraction, map.byte_size())
+        };
         Ok((Structures::Map(map), leaping))
     }
 

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
-use wheatstone_core::skip::{BlockSize, SkipPlan, Structure};
+use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::{Gpu, GpuError};
@@ -73,6 +73,10 @@ pub(crate) struct Leaping {
     pub(crate) occupied_fraction: Option<f64>,
     /// Bytes of the structure.
     pub(crate) bytes: u64,
+    /// Bytes of the ranges that the structure was made from, which are given back once it was.
+    pub(crate) ranges_bytes: u64,
+    /// Bytes, at most, that working it out took besides; given back, too.
+    pub(crate) working_bytes: u64,
 }
 
 /// The gradient map that a shot looks magnitudes up in, as reports tell it.
@@ -93,7 +97,14 @@ impl GradientMapSize {
 
 impl Leaping {
     /// Every sample is taken.
-    const NOTHING: Self = Self { structure: "none", block_size: None, occupied_fraction: None, bytes: 0 };
+    const NOTHING: Self = Self {
+        structure: "none",
+        block_size: None,
+        occupied_fraction: None,
+        bytes: 0,
+        ranges_bytes: 0,
+        working_bytes: 0,
+    };
 
     /// Over the blocks that a structure tells to be empty.
     fn over_empty_blocks(plan: &SkipPlan, occupied_fraction: f64, bytes: u64) -> Self {
@@ -102,12 +113,13 @@ impl Leaping {
             block_size: Some(plan.block_size),
             occupied_fraction: Some(occupied_fraction),
             bytes,
+            ..Self::NOTHING
         }
     }
 
     /// Over the blocks whose range of values tells that they do not change an extreme.
     fn over_idle_blocks(plan: &SkipPlan, bytes: u64) -> Self {
-        Self { structure: "ranges", block_size: Some(plan.block_size), occupied_fraction: None, bytes }
+        Self { structure: "ranges", block_size: Some(plan.block_size), bytes, ..Self::NOTHING }
     }
 
     /// The report of a picture whose rays have read the structure so many times.
@@ -118,6 +130,8 @@ impl Leaping {
             "occupied_fraction": self.occupied_fraction,
             "map_reads": map_reads,
             "bytes": self.bytes,
+            "ranges_bytes": self.ranges_bytes,
+            "working_bytes": self.working_bytes,
         })
     }
 
@@ -190,6 +204,14 @@ impl<'v> Engine<'v> {
     /// Holds a volume for the CPU renderer.
     pub(crate) fn cpu(volume: &'v Volume, storage: StorageKind) -> Self {
         Self::Cpu(Box::new(CpuEngine::new(volume, storage)))
+    }
+
+    /// What is made where something is asked for.
+    pub(crate) fn plan(&self, request: SkipRequest) -> Option<SkipPlan> {
+        match self {
+            Self::Gpu(engine) => engine.plan(request),
+            Self::Cpu(engine) => engine.plan(request),
+        }
     }
 
     /// Makes what is made once per change of the settings.

@@ -18,7 +18,7 @@ use wheatstone_core::gradient_map::GradientMap;
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Cast, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Placement, Settings};
-use wheatstone_core::skip::{BlockSize, Skip, SkipPlan, SkipRequest, Structure, voxel_occupancy};
+use wheatstone_core::skip::{BlockSize, Skip, SkipRequest, Structure, voxel_occupancy};
 use wheatstone_core::transfer::BenchmarkRamp;
 use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_core::volume::{StorageKind, Volume};
@@ -157,11 +157,12 @@ pub(crate) fn run(args: &SkipBenchArgs) -> Result<(), Failure> {
 
 impl SkipBenchArgs {
     fn measure_volume(&self, described: &str, rows: &mut Vec<Row>) -> Result<Device, Failure> {
-        let (name, volume) = open(described)?;
+        let Opened { volume, name, benchmark } = open(described)?;
         let transfers = match &self.tf {
             Some(tf) => vec![tf.clone()],
             None => {
-                let ramps: Vec<_> = BenchmarkRamp::of_volume(&name).map(TransferSpec::Benchmark).collect();
+                let ramps: Vec<_> =
+                    BenchmarkRamp::of_volume(&benchmark).map(TransferSpec::Benchmark).collect();
                 if ramps.is_empty() { vec![TransferSpec::Ramp([0.0, 1.0])] } else { ramps }
             }
         };
@@ -192,9 +193,12 @@ impl SkipBenchArgs {
         })
     }
 
-    /// Every row of a case.
+    /// Every row of a case: a structure that the device cannot hold has none.
     fn measure(&self, case: &Case<'_>, engine: &mut Engine<'_>, least: f64) -> Result<Vec<Row>, Failure> {
-        let variants = self.variants();
+        let mut variants = self.variants();
+        variants.retain(|variant| {
+            engine.plan(self.skipping(variant).request).map(|plan| plan.structure) == variant.structure
+        });
         let shots = variants
             .iter()
             .map(|variant| engine.prepare(&case.parameters, &self.skipping(variant)))
@@ -226,7 +230,7 @@ impl SkipBenchArgs {
         Ok(rows)
     }
 
-    /// The base, then each structure with each size of blocks.
+    /// The base, then each structure with each size of blocks, whether or not a device can hold it.
     fn variants(&self) -> Vec<Variant> {
         let with_sizes = |structure| {
             self.block_sizes
@@ -330,15 +334,13 @@ impl SkipBenchArgs {
         engine: &mut Engine<'_>,
         variant: &Variant,
     ) -> Result<[Option<f64>; 2], Failure> {
-        let (Variant { structure: Some(structure), block_size: Some(block_size) }, skipping) =
-            (*variant, self.skipping(variant))
-        else {
-            return Ok([None, None]);
-        };
-        let plan = SkipPlan::new(structure, block_size);
+        let skipping = self.skipping(variant);
+        let Some(plan) = engine.plan(skipping.request) else { return Ok([None, None]) };
         let update_ms = engine.update_ms(&case.parameters, &skipping, &plan)?;
-        let update_ms_voxels = match structure {
-            Structure::Distance => engine.update_ms_by_voxels(&case.parameters, &skipping, block_size)?,
+        let update_ms_voxels = match plan.structure {
+            Structure::Distance => {
+                engine.update_ms_by_voxels(&case.parameters, &skipping, plan.block_size)?
+            }
             Structure::Occupancy | Structure::Anisotropic => None,
         };
         Ok([Some(update_ms), update_ms_voxels])
@@ -385,18 +387,32 @@ fn median_of(frames: &[Frame], number: fn(&Frame) -> f64) -> f64 {
     median(&frames.iter().map(number).collect::<Vec<_>>())
 }
 
-/// A phantom by name and size, or a file; with the name of the volume.
-fn open(described: &str) -> Result<(String, Volume), Failure> {
+/// A volume by its names.
+struct Opened {
+    volume: Volume,
+    /// What rows call it: the size tells phantoms apart.
+    name: String,
+    /// The benchmark volume that it may be.
+    benchmark: String,
+}
+
+/// A phantom by name and size, or a file.
+fn open(described: &str) -> Result<Opened, Failure> {
     let phantom =
         described.split_once(':').and_then(|(name, size)| Some((name.parse::<Phantom>().ok()?, size)));
     let Some((phantom, size)) = phantom else {
         let path = Path::new(described);
-        return Ok((name_of(path), load(path)?.volume));
+        let name = name_of(path);
+        return Ok(Opened { volume: load(path)?.volume, benchmark: name.clone(), name });
     };
     let dims =
         spec::phantom_dims(size).map_err(|error| Failure::input(format!("{described}: size {error}")))?;
     let _spinner = Bar::spinner(format!("sampling {described}"));
-    Ok((phantom.name().to_owned(), phantom.volume(dims).map_err(Failure::input)?))
+    Ok(Opened {
+        volume: phantom.volume(dims).map_err(Failure::input)?,
+        name: described.to_owned(),
+        benchmark: phantom.name().to_owned(),
+    })
 }
 
 impl Variant {
@@ -435,7 +451,7 @@ fn to_table(device: Option<&Device>, rows: &[Row]) -> String {
         lines.push(format!("{backend}: {name} ({driver})"));
     }
     lines.push(format!(
-        "{:<10} {:<12} {:<11} {:>5} {:>9} {:>9} {:>7} {:>11} {:>9} {:>7} {:>9} {:>9} {:>9}",
+        "{:<12} {:<12} {:<11} {:>5} {:>9} {:>9} {:>7} {:>11} {:>9} {:>7} {:>9} {:>9} {:>9}",
         "volume",
         "tf",
         "skip",
@@ -453,7 +469,7 @@ fn to_table(device: Option<&Device>, rows: &[Row]) -> String {
     let optional = |ms: Option<f64>| ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.2}"));
     for row in rows {
         lines.push(format!(
-            "{:<10} {:<12} {:<11} {:>5} {:>7.2} % {:>9.1} {:>7.2} {:>11.2} {:>9.2} {:>7.2} {:>9} {:>9} {:>9.0}",
+            "{:<12} {:<12} {:<11} {:>5} {:>7.2} % {:>9.1} {:>7.2} {:>11.2} {:>9.2} {:>7.2} {:>9} {:>9} {:>9.0}",
             row.volume,
             row.transfer_name,
             row.variant.name(),

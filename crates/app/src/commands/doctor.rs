@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
-use crate::skipping::{StructureBytes, described, structures};
+use crate::skipping::{StructureBytes, described, gradient_map_bytes, structures};
 use clap::Args;
 use serde_json::{Value, json};
 use wheatstone_core::volume::StorageKind;
@@ -40,6 +40,7 @@ pub(crate) fn run(args: &DoctorArgs) -> Result<(), Failure> {
             "uses": choice.uses,
             "why": choice.why,
             "structures": structures(EXAMPLE_DIMS, StorageKind::U8).into_iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
+            "gradient_map_bytes": gradient_map_bytes(EXAMPLE_DIMS, StorageKind::U8),
         }));
     }
     let mut lines: Vec<String> = adapters.iter().map(adapter_text).collect();

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
-use crate::skipping::{StructureBytes, described, structures};
+use crate::skipping::{StructureBytes, described, gradient_map_bytes, structures};
 use crate::volume_args::VolumeArgs;
 use clap::Args;
 use serde_json::{Map, Value, json};
@@ -59,6 +59,7 @@ fn as_json(args: &InfoArgs, loaded: &Loaded, statistics: &Statistics) -> Value {
         "robust_window": [robust.lo(), robust.hi()],
         "non_finite_voxels": volume.non_finite_count(),
         "structures": structures(grid.dims(), StorageKind::lossless_for(volume)).into_iter().map(StructureBytes::to_json).collect::<Vec<_>>(),
+        "gradient_map_bytes": gradient_map_bytes(grid.dims(), StorageKind::lossless_for(volume)),
         "warnings": warnings,
     })
 }

@@ -45,7 +45,18 @@ fn render_reports_one_object() {
     assert_eq!(json["frames_ms"].as_array().unwrap().len(), 3);
     assert!(json["samples"].as_u64().unwrap() > 0);
     assert_eq!(json["outputs"], serde_json::json!(["a.png"]));
-    assert_eq!(keys(&json["skip"]), ["block_size", "bytes", "map_reads", "occupied_fraction", "structure"]);
+    assert_eq!(
+        keys(&json["skip"]),
+        [
+            "block_size",
+            "bytes",
+            "map_reads",
+            "occupied_fraction",
+            "ranges_bytes",
+            "structure",
+            "working_bytes"
+        ]
+    );
 }
 
 #[test]
@@ -76,6 +87,7 @@ fn render_tells_what_was_skipped() {
         let skip = &skipped["skip"];
         assert_eq!((&skip["structure"], &skip["block_size"]), (&structure.into(), &2.into()));
         assert_eq!(skip["bytes"], bytes, "{structure}");
+        assert_eq!((&skip["ranges_bytes"], &skip["working_bytes"]), (&(4 * 1728).into(), &bytes.into()));
         assert!(skip["map_reads"].as_u64().unwrap() > 0, "{skip}");
         let occupied = skip["occupied_fraction"].as_f64().unwrap();
         assert!((0.05..0.6).contains(&occupied), "{skip}");
@@ -113,6 +125,7 @@ fn info_tells_what_the_file_holds() {
         "dims",
         "file",
         "format",
+        "gradient_map_bytes",
         "mean",
         "non_finite_voxels",
         "orientation",
@@ -163,7 +176,16 @@ fn warnings_go_to_standard_error() {
 #[test]
 fn doctor_always_answers() {
     let json = Bench::new().run(&["doctor", "--json"]).json();
-    assert_eq!(keys(&json), ["adapters", "cpu_threads", "structures", "uses", "version", "why"]);
+    assert_eq!(
+        keys(&json),
+        ["adapters", "cpu_threads", "gradient_map_bytes", "structures", "uses", "version", "why"]
+    );
+    assert_eq!(json["gradient_map_bytes"], 512 * 512 * 512);
+    let structures = json["structures"].as_array().unwrap();
+    let names: Vec<&str> = structures.iter().map(|s| s["structure"].as_str().unwrap()).collect();
+    let expected = ["ranges", "gradient_ranges", "working", "occupancy", "distance", "anisotropic"];
+    assert_eq!(names, expected);
+    assert!(structures.iter().all(|s| s["part_of_volume"].as_f64().unwrap() <= 0.1), "{structures:?}");
     for adapter in json["adapters"].as_array().unwrap() {
         assert_eq!(keys(adapter), ["api", "driver", "features", "is_software", "limits", "name", "tier"]);
     }
@@ -198,6 +220,7 @@ fn bench_skip_lists_every_structure_and_draws_charts() {
         "skip",
         "sphere.nrrd",
         "beetle:20",
+        "beetle:16",
         "--size",
         "20x20",
         "--frames",
@@ -229,7 +252,9 @@ fn bench_skip_lists_every_structure_and_draws_charts() {
     assert!(rows.iter().all(|row| keys(row) == row_keys));
     let cases: Vec<&str> =
         rows.iter().filter(|row| row["skip"] == "none").map(|row| row["tf"].as_str().unwrap()).collect();
-    assert_eq!(cases, ["ramp:0..1", "beetle-1d", "beetle-2d"]);
+    assert_eq!(cases, ["ramp:0..1", "beetle-1d", "beetle-2d", "beetle-1d", "beetle-2d"]);
+    let volumes: Vec<&str> = rows.chunks(7).map(|rows| rows[0]["volume"].as_str().unwrap()).collect();
+    assert_eq!(volumes, ["sphere", "beetle:20", "beetle:20", "beetle:16", "beetle:16"]);
     for rows in rows.chunks(7) {
         let base = &rows[0];
         let sizes: Vec<Option<u64>> = rows.iter().map(|row| row["block_size"].as_u64()).collect();
@@ -243,12 +268,14 @@ fn bench_skip_lists_every_structure_and_draws_charts() {
             assert!((0.0..=1.0).contains(&number("occupancy")), "{row}");
         }
     }
-    for chart in ["sphere-ramp_0..1-speed-up.svg", "beetle-beetle-2d-update.svg"] {
+    for chart in
+        ["sphere-ramp_0..1-speed-up.svg", "beetle_20-beetle-2d-update.svg", "beetle_16-beetle-1d-update.svg"]
+    {
         let svg = std::fs::read_to_string(bench.path("plots").join(chart)).unwrap();
         assert!(svg.contains("anisotropic") && svg.contains("</svg>"), "{chart}");
     }
     let table = bench.run(&small).stdout;
-    assert_eq!(table.lines().filter(|line| line.contains(" anisotropic ")).count(), 6, "{table}");
+    assert_eq!(table.lines().filter(|line| line.contains(" anisotropic ")).count(), 10, "{table}");
 }
 
 #[test]

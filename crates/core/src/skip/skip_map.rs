@@ -18,6 +18,16 @@ pub enum Structure {
     Anisotropic,
 }
 
+impl Structure {
+    /// How many numbers a block has.
+    pub fn octants(self) -> usize {
+        match self {
+            Self::Occupancy | Self::Distance => 1,
+            Self::Anisotropic => OCTANTS,
+        }
+    }
+}
+
 /// Blocks that a ray may leap over, from each block: a cube of this many blocks around it (occupancy and distance) or
 /// from it onwards (anisotropic) holds no occupied one. 0 is occupied. Beyond the grid everything is empty.
 ///

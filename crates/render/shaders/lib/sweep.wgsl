@@ -11,6 +11,8 @@ struct Sweep {
     start: u32,
     // From one word of a line to the next; wraps around where it is negative.
     step: u32,
+    // From where a word is read to where it is written: from one octant to another, or 0.
+    to_target: u32,
 }
 
 @group(0) @binding(0) var<uniform> sweep: Sweep;

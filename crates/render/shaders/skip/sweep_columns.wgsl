@@ -27,14 +27,14 @@ fn sweep_columns(@builtin(global_invocation_id) id: vec3u) {
         // The last position with a distance so far that is not larger.
         var nearest = 0u;
         for (var i = 0u; i < sweep.length; i++) {
-            let word = field[at];
-            let so_far = word >> shift & 255u;
+            let so_far = field[at] >> shift & 255u;
             last_at[so_far] = position;
             distance = min(distance + select(1u, 0u, nearest + distance >= position), 255u);
             nearest = max(nearest, last_at[distance]);
             nearest = select(nearest, position, so_far <= distance);
             distance = min(distance, so_far);
-            field[at] = insertBits(word, distance, shift, 8u);
+            let to = at + sweep.to_target;
+            field[to] = insertBits(field[to], distance, shift, 8u);
             position++;
             at += sweep.step;
         }

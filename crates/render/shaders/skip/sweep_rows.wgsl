@@ -26,7 +26,7 @@ fn sweep_up(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < sweep.length; i++) {
         let word = count_up(before, field[at]);
         before = word >> 24u;
-        field[at] = word;
+        field[at + sweep.to_target] = word;
         at += sweep.step;
     }
 }
@@ -41,7 +41,7 @@ fn sweep_down(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < sweep.length; i++) {
         let word = count_up(before, reversed(field[at]));
         before = word >> 24u;
-        field[at] = reversed(word);
+        field[at + sweep.to_target] = reversed(word);
         at += sweep.step;
     }
 }

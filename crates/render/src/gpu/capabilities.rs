@@ -1,5 +1,7 @@
 //! Capability tiers, read once when a device is described.
 
+use wheatstone_core::skip::SkipHost;
+
 /// What an adapter offers of the things that Wheatstone can use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Capabilities {
@@ -62,6 +64,15 @@ impl Capabilities {
         wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
             | wgpu::Features::FLOAT32_FILTERABLE
             | wgpu::Features::TIMESTAMP_QUERY
+    }
+
+    /// How large structures of empty-space skipping may be.
+    pub fn skip_host(&self) -> SkipHost {
+        let size = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
+        SkipHost::Gpu {
+            largest_side: self.largest_3d_side as usize,
+            largest_buffer: size(self.largest_storage_binding),
+        }
     }
 
     /// The tier that these capabilities make.

@@ -2,7 +2,6 @@
 //! for the nearest occupied one. The baseline of the benchmark.
 
 use super::distance::{DistancePass, empty_byte};
-use super::field::FieldLayout;
 use super::table::Table;
 use super::{GpuSkipMap, SkipKernels, Structure};
 use crate::gpu::{Gpu, GpuError};
@@ -12,7 +11,7 @@ use crate::volume::GpuVolume;
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::skip::{BlockGrid, BlockSize};
+use wheatstone_core::skip::{BlockGrid, BlockSize, FieldLayout};
 use wheatstone_core::transfer::Lut;
 
 pub(super) const VOXELS_BY_VALUE: KernelFiles<'_> = KernelFiles {
@@ -50,7 +49,7 @@ pub struct DmBaseline<'a> {
     gradient_map: Option<&'a GpuGradientMap>,
     grid: BlockGrid,
     distances: DistancePass,
-    empty: wgpu::Buffer,
+    empty_and_row: wgpu::Buffer,
     uniform: wgpu::Buffer,
     occupancy: Kernel,
     zigzag: Kernel,
@@ -69,17 +68,17 @@ impl<'a> DmBaseline<'a> {
         block_size: BlockSize,
     ) -> Result<Self, GpuError> {
         let grid = BlockGrid::new(volume.dims, block_size);
-        let distances = DistancePass::new(gpu, kernels, FieldLayout { blocks: grid.dims() })?;
+        let distances = DistancePass::new(gpu, kernels, FieldLayout::new(grid.dims(), Structure::Distance))?;
         let occupancy = if gradient_map.is_some() { &VOXELS_BY_VALUE_GRADIENT } else { &VOXELS_BY_VALUE };
-        let empty = [u32::from(empty_byte(Structure::Distance)); 4];
+        let empty_and_row = [u32::from(empty_byte(Structure::Distance)), distances.field().row_words(), 0, 0];
         let baseline = Self {
             volume,
             gradient_map,
             grid,
             distances,
-            empty: gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("empty"),
-                contents: bytemuck::cast_slice(&empty),
+            empty_and_row: gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("empty and row"),
+                contents: bytemuck::cast_slice(&empty_and_row),
                 usage: wgpu::BufferUsages::UNIFORM,
             }),
             uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -104,11 +103,11 @@ impl<'a> DmBaseline<'a> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.encode_occupancy(gpu, &mut encoder, parameters)?;
         self.distances.encode_rows(&mut encoder);
-        for axis in [[0, 1, 0, 0], [0, 0, 1, 0_u32]] {
-            map.encode_copy(&mut encoder, self.distances.octants(Structure::Distance));
+        for axis in [[0, 1, 0], [0, 0, 1]] {
+            map.encode_copy(&mut encoder, self.distances.field());
             self.encode_zigzag(gpu, &mut encoder, axis, &map);
         }
-        map.encode_copy(&mut encoder, self.distances.octants(Structure::Distance));
+        map.encode_copy(&mut encoder, self.distances.field());
         gpu.queue.submit([encoder.finish()]);
         gpu.check()?;
         Ok(map)
@@ -136,15 +135,15 @@ impl<'a> DmBaseline<'a> {
         let opacities = opacity_table(gpu, &parameters.lut)?;
         let opacities = opacities.view();
         let mut resources = vec![
-            self.empty.as_entire_binding(),
-            self.distances.occupied().buffer.as_entire_binding(),
+            self.empty_and_row.as_entire_binding(),
+            self.distances.field().buffer.as_entire_binding(),
             self.uniform.as_entire_binding(),
             wgpu::BindingResource::TextureView(&self.volume.texture),
             wgpu::BindingResource::TextureView(&opacities),
         ];
         resources.extend(self.gradient_map.map(|map| wgpu::BindingResource::TextureView(&map.view)));
         let group = self.occupancy.bind(&gpu.device, &resources);
-        self.occupancy.dispatch(encoder, &group, self.distances.occupied().layout.invocations());
+        self.occupancy.dispatch(encoder, &group, self.distances.field().invocations());
         Ok(())
     }
 
@@ -152,22 +151,22 @@ impl<'a> DmBaseline<'a> {
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        axis: [u32; 4],
+        [x, y, z]: [u32; 3],
         so_far: &GpuSkipMap,
     ) {
-        let axis = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("axis"),
-            contents: bytemuck::cast_slice(&axis),
+        let field = self.distances.field();
+        let axis_and_row = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("axis and row"),
+            contents: bytemuck::bytes_of(&[x, y, z, field.row_words()]),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let field = self.distances.occupied();
         let resources = [
-            axis.as_entire_binding(),
+            axis_and_row.as_entire_binding(),
             field.buffer.as_entire_binding(),
             wgpu::BindingResource::TextureView(&so_far.view),
         ];
         let group = self.zigzag.bind(&gpu.device, &resources);
-        self.zigzag.dispatch(encoder, &group, field.layout.invocations());
+        self.zigzag.dispatch(encoder, &group, field.invocations());
     }
 }
 

@@ -4,7 +4,7 @@ use super::SkipKernels;
 use super::block_texture::block_texture;
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
-use crate::layers::copy_layers;
+use crate::layers::{PaddedRows, copy_layers};
 use crate::readback::read_texture;
 use crate::volume::{GpuVolume, TexelFormat};
 use bytemuck::{Pod, Zeroable};
@@ -122,6 +122,7 @@ impl GpuBlockRanges {
                 slab.as_entire_binding(),
             ],
         );
+        let rows = PaddedRows { buffer: &slab, first_byte: 0, row_bytes };
         for first_layer in (0..depth).step_by(slab_layers) {
             let layers = slab_layers.min(depth - first_layer);
             let blocks = [width, height, layers].map(|side| side as u32);
@@ -141,7 +142,7 @@ impl GpuBlockRanges {
             gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&piece));
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             kernel.dispatch(&mut encoder, &group, blocks);
-            copy_layers(&mut encoder, &slab, row_bytes, &texture, first_layer..first_layer + layers);
+            copy_layers(&mut encoder, &rows, &texture, first_layer..first_layer + layers);
             gpu.queue.submit([encoder.finish()]);
             gpu.wait()?;
         }

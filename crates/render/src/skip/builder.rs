@@ -1,14 +1,13 @@
 //! Skip maps of one volume: what is made once, and what each change of the settings costs.
 
 use super::distance::{DistancePass, empty_byte};
-use super::field::FieldLayout;
 use super::occupancy::{NormalisedRanges, OccupancyPass};
 use super::{GpuBlockRanges, GpuSkipMap, SkipKernels, Structure};
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
 use crate::volume::GpuVolume;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::skip::{BlockGrid, BlockSize, Visibility};
+use wheatstone_core::skip::{BlockGrid, BlockSize, FieldLayout, Visibility};
 use wheatstone_core::volume::Encoding;
 
 /// Makes skip maps of one volume with blocks of one size. Holds the ranges of the blocks; a change of the settings reads no
@@ -19,6 +18,12 @@ pub struct SkipBuilder {
     encoding: Encoding,
     values: GpuBlockRanges,
     gradients: Option<Gradients>,
+    passes: Option<Passes>,
+}
+
+/// What works maps out, with room for one structure or more.
+#[derive(Debug)]
+struct Passes {
     occupancy: OccupancyPass,
     distances: DistancePass,
 }
@@ -44,16 +49,12 @@ impl SkipBuilder {
         block_size: BlockSize,
     ) -> Result<Self, GpuError> {
         let values = GpuBlockRanges::of_values(gpu, kernels, volume, block_size)?;
-        let layout = FieldLayout { blocks: values.grid().dims() };
-        let distances = DistancePass::new(gpu, kernels, layout)?;
-        let occupancy = OccupancyPass::new(gpu, kernels, &values, distances.occupied())?;
         Ok(Self {
             kernels: kernels.clone(),
             encoding: volume.encoding(),
             values,
             gradients: None,
-            occupancy,
-            distances,
+            passes: None,
         })
     }
 
@@ -89,11 +90,34 @@ impl SkipBuilder {
         &self.values
     }
 
-    /// Bytes on the device besides the maps themselves: ranges and the fields that maps are worked out in.
-    pub fn byte_size(&self) -> u64 {
-        self.values.byte_size()
-            + self.gradients.as_ref().map_or(0, |gradients| gradients.ranges.byte_size())
-            + self.distances.byte_size()
+    /// Bytes on the device of the ranges of values, and of gradients if there are any.
+    pub fn ranges_byte_size(&self) -> u64 {
+        self.values.byte_size() + self.gradients.as_ref().map_or(0, |gradients| gradients.ranges.byte_size())
+    }
+
+    /// Bytes on the device of the field that maps are worked out in: that of the largest structure so far.
+    pub fn working_byte_size(&self) -> u64 {
+        self.passes.as_ref().map_or(0, |passes| passes.distances.field().layout.byte_size() as u64)
+    }
+
+    /// Makes room to work a structure out, unless there is.
+    ///
+    /// # Errors
+    /// More blocks than the device can hold, no memory, a lost device.
+    pub fn reserve(&mut self, gpu: &Gpu, structure: Structure) -> Result<(), GpuError> {
+        self.take_passes(gpu, structure).map(|passes| self.passes = Some(passes))
+    }
+
+    fn take_passes(&mut self, gpu: &Gpu, structure: Structure) -> Result<Passes, GpuError> {
+        if let Some(passes) = self.passes.take()
+            && passes.distances.fits(structure)
+        {
+            return Ok(passes);
+        }
+        let layout = FieldLayout::new(self.grid().dims(), structure);
+        let distances = DistancePass::new(gpu, &self.kernels, layout)?;
+        let occupancy = OccupancyPass::new(gpu, &self.kernels, &self.values, distances.field())?;
+        Ok(Passes { occupancy, distances })
     }
 
     /// A new map for some settings. The work is submitted, not waited for.
@@ -111,8 +135,8 @@ impl SkipBuilder {
         Ok(map)
     }
 
-    /// Makes a map of this builder show other settings. Allocates nothing from the second time on; casts submitted before
-    /// see the map as it was.
+    /// Makes a map of this builder show other settings. Allocates nothing from the second time on for a structure; casts
+    /// submitted before see the map as it was.
     ///
     /// # Errors
     /// No memory, a lost device.
@@ -127,7 +151,7 @@ impl SkipBuilder {
     ) -> Result<(), GpuError> {
         assert_eq!(map.grid(), self.grid(), "the map is one of this builder's");
         let structure = map.structure();
-        self.distances.reserve(gpu, structure)?;
+        let mut passes = self.take_passes(gpu, structure)?;
         let normalised_from_stored = self.encoding.normalised_from_stored(parameters.window);
         let values = NormalisedRanges { ranges: &self.values, normalised_from_stored };
         let gradients = self.gradients.as_ref().map(|gradients| NormalisedRanges {
@@ -136,16 +160,17 @@ impl SkipBuilder {
         });
         let visibility = Visibility::new(parameters);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.occupancy.encode(
+        passes.occupancy.encode(
             gpu,
             &self.kernels,
             &mut encoder,
             (values, gradients),
             &visibility,
-            (self.distances.occupied(), empty_byte(structure)),
+            (passes.distances.field(), empty_byte(structure)),
         )?;
-        self.distances.encode(&mut encoder, structure);
-        map.encode_copy(&mut encoder, self.distances.octants(structure));
+        passes.distances.encode(&mut encoder, structure);
+        map.encode_copy(&mut encoder, passes.distances.field());
+        self.passes = Some(passes);
         gpu.queue.submit([encoder.finish()]);
         gpu.check()
     }

@@ -24,8 +24,6 @@ pub use live::LiveSkipMap;
 pub use skip_map::GpuSkipMap;
 pub use wheatstone_core::skip::Structure;
 
-use wheatstone_core::skip::OCTANTS;
-
 /// Every kernel of this module.
 #[cfg(test)]
 pub(crate) fn kernel_files() -> Vec<crate::kernel::KernelFiles<'static>> {
@@ -72,7 +70,12 @@ mod tests {
 
     #[test]
     fn sweep_uniform_matches_wgsl() {
-        assert_layout!("lib/sweep", "Sweep", SweepUniform, [lines, line_strides, length, start, step]);
+        assert_layout!(
+            "lib/sweep",
+            "Sweep",
+            SweepUniform,
+            [lines, line_strides, length, start, step, to_target]
+        );
     }
 
     #[test]

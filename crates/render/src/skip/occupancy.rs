@@ -20,7 +20,7 @@ pub(super) struct NormalisedRanges<'a> {
 /// Tables and bind groups of the kernels. What was once needed is kept.
 #[derive(Debug)]
 pub(super) struct OccupancyPass {
-    empty: wgpu::Buffer,
+    empty_and_row: wgpu::Buffer,
     by_value: ByValue,
     by_value_gradient: Option<ByValueGradient>,
 }
@@ -54,8 +54,8 @@ impl OccupancyPass {
         values: &GpuBlockRanges,
         field: &Field,
     ) -> Result<Self, GpuError> {
-        let empty = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("empty"),
+        let empty_and_row = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("empty and row"),
             size: 16,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
@@ -65,14 +65,18 @@ impl OccupancyPass {
         let group = kernel.bind(
             &gpu.device,
             &[
-                empty.as_entire_binding(),
+                empty_and_row.as_entire_binding(),
                 field.buffer.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&values.view()),
                 wgpu::BindingResource::TextureView(&occupied_from.view()),
             ],
         );
         gpu.check()?;
-        Ok(Self { empty, by_value: ByValue { occupied_from, kernel, group }, by_value_gradient: None })
+        Ok(Self {
+            empty_and_row,
+            by_value: ByValue { occupied_from, kernel, group },
+            by_value_gradient: None,
+        })
     }
 
     /// Finds the occupied blocks, which get the byte 0; others get `empty`. Without gradient ranges any gradient may occur.
@@ -88,7 +92,8 @@ impl OccupancyPass {
         visibility: &Visibility,
         (field, empty): (&Field, u8),
     ) -> Result<(), GpuError> {
-        gpu.queue.write_buffer(&self.empty, 0, bytemuck::bytes_of(&[u32::from(empty); 4]));
+        let empty_and_row = [u32::from(empty), field.row_words(), 0, 0];
+        gpu.queue.write_buffer(&self.empty_and_row, 0, bytemuck::bytes_of(&empty_and_row));
         let (codes, map) = (values.ranges.codes(), values.normalised_from_stored);
         let (kernel, group) = match (visibility.second_axis(), gradients) {
             (SecondAxis::Gradient, Some(gradients)) => {
@@ -98,7 +103,7 @@ impl OccupancyPass {
                     None => ByValueGradient::new(
                         gpu,
                         kernels,
-                        (&self.empty, field),
+                        (&self.empty_and_row, field),
                         [values.ranges, gradients.ranges],
                         visibility,
                     )?,
@@ -116,7 +121,7 @@ impl OccupancyPass {
                 (&self.by_value.kernel, &self.by_value.group)
             }
         };
-        kernel.dispatch(encoder, group, field.layout.invocations());
+        kernel.dispatch(encoder, group, field.invocations());
         Ok(())
     }
 }
@@ -125,7 +130,7 @@ impl ByValueGradient {
     fn new(
         gpu: &Gpu,
         kernels: &SkipKernels,
-        (empty, field): (&wgpu::Buffer, &Field),
+        (empty_and_row, field): (&wgpu::Buffer, &Field),
         [values, gradients]: [&GpuBlockRanges; 2],
         visibility: &Visibility,
     ) -> Result<Self, GpuError> {
@@ -137,7 +142,7 @@ impl ByValueGradient {
         let group = kernel.bind(
             &gpu.device,
             &[
-                empty.as_entire_binding(),
+                empty_and_row.as_entire_binding(),
                 field.buffer.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&values.view()),
                 wgpu::BindingResource::TextureView(&gradients.view()),

@@ -1,10 +1,10 @@
 //! Skip maps on the device: the GPU twin of [`wheatstone_core::skip::SkipMap`].
 
+use super::Structure;
 use super::block_texture::block_texture;
 use super::field::Field;
-use super::{OCTANTS, Structure};
 use crate::gpu::{Gpu, GpuError};
-use crate::layers::copy_layers;
+use crate::layers::{PaddedRows, copy_layers};
 use crate::readback::read_texture;
 use wheatstone_core::skip::BlockGrid;
 
@@ -23,25 +23,23 @@ impl GpuSkipMap {
     /// # Errors
     /// [`GpuError::TooManyBlocks`] for more than the device can hold, no memory, a lost device.
     pub(super) fn new(gpu: &Gpu, grid: BlockGrid, structure: Structure) -> Result<Self, GpuError> {
-        let octants = if structure == Structure::Anisotropic { OCTANTS } else { 1 };
         let [width, height, depth] = grid.dims();
-        let dims = [width, height, depth * octants];
+        let dims = [width, height, depth * structure.octants()];
         let texture = block_texture(gpu, "skip map", dims, wgpu::TextureFormat::R8Uint)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self { texture, view, grid, structure })
     }
 
-    /// Takes over the bytes of all octants.
-    pub(super) fn encode_copy<'a>(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        octants: impl Iterator<Item = &'a Field>,
-    ) {
+    /// Takes over the bytes of all its octants.
+    pub(super) fn encode_copy(&self, encoder: &mut wgpu::CommandEncoder, field: &Field) {
         let layers = self.grid.dims()[2];
-        for (octant, field) in octants.enumerate() {
-            let row_bytes = field.layout.row_bytes();
-            let copied = octant * layers..(octant + 1) * layers;
-            copy_layers(encoder, &field.buffer, row_bytes, &self.texture, copied);
+        for octant in 0..self.structure.octants() {
+            let rows = PaddedRows {
+                buffer: &field.buffer,
+                first_byte: octant * field.layout.octant_bytes(),
+                row_bytes: field.layout.row_bytes(),
+            };
+            copy_layers(encoder, &rows, &self.texture, octant * layers..(octant + 1) * layers);
         }
     }
 
