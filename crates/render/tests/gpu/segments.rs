@@ -5,11 +5,14 @@ use crate::scene::*;
 use crate::tolerance;
 use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{Mode, Settings, Shading};
+use wheatstone_core::skip::{BlockSize, Structure};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels};
-use wheatstone_render::{GpuVolume, Renderer, Sources, TexelFormat};
+use wheatstone_render::skip::{SkipBuilder, SkipKernels};
+use wheatstone_render::{GpuVolume, Leap, Renderer, Sources, TexelFormat};
 
 /// Loop iterations per invocation that the renderer never exceeds in one dispatch: above it rays are split.
 const ITERATION_LIMIT: f32 = 60_000.0;
@@ -180,7 +183,7 @@ fn rows_in_pieces_are_whole_pictures() {
                 pictures.push(renderer.render_to_host(gpu, &prepared, &[view]).unwrap().remove(0));
             }
         }
-        let black = |cast: &wheatstone_core::reference::Cast| cast.image.over_background([0.0; 3]);
+        let black = |cast: &Cast| cast.image.over_background([0.0; 3]);
         let found = wheatstone_core::metrics::compare(&black(&cpu), &black(&pictures[0])).unwrap();
         assert!(found.dssim() <= tolerance::dssim(TexelFormat::R16Unorm), "{found:?}");
         for (i, picture) in pictures.iter().enumerate() {
@@ -189,5 +192,54 @@ fn rows_in_pieces_are_whole_pictures() {
             assert_eq!(picture.samples, pictures[0].samples, "picture {i}");
             assert_eq!(picture.image.depth_m, pictures[0].image.depth_m, "picture {i}");
         }
+    });
+}
+
+/// The state of a ray is kept between dispatches, wherever in a block or a leap they part.
+#[test]
+fn rays_in_segments_leap_as_they_march() {
+    let volume = volume();
+    let block_size = BlockSize::cube(2).unwrap();
+    let format = TexelFormat::R16Unorm;
+    on_device(|gpu, renderer| {
+        let kernels = SkipKernels::new(gpu).unwrap();
+        let uploaded = GpuVolume::upload_as(gpu, &volume, format, &mut |_, _| {}).unwrap();
+        let mut builder = SkipBuilder::new(gpu, &kernels, &uploaded, block_size).unwrap();
+        let mut failures = Vec::new();
+        for (name, settings, cost) in cases(&volume) {
+            let sampling_factor = 2.5 * ITERATION_LIMIT / cost / 16.0;
+            let transfer = TransferFunction::ramp(0.55, 0.9).unwrap();
+            let settings = Settings { sampling_factor, transfer, ..settings };
+            let parameters = CastParameters::new(&settings, &placement(&volume));
+            let mut cast = |leap| {
+                let sources = Sources { leap, ..Sources::volume(&uploaded) };
+                let prepared = renderer.prepare(gpu, &sources, parameters.clone()).unwrap();
+                renderer.render_to_host(gpu, &prepared, &[view()]).unwrap().remove(0)
+            };
+            let marched = cast(Leap::Nothing);
+            let mut compare = |what: &str, leapt: Cast| {
+                let difference = largest_difference(&marched, &leapt);
+                let is_composite = settings.mode == Mode::Composite;
+                let tolerance = if is_composite { tolerance::MANY_SAMPLES } else { tolerance::PROJECTIONS };
+                if difference > tolerance || difference.is_nan() {
+                    failures.push(format!("{name}, {what}: largest difference {difference}"));
+                }
+                // Means have samples wherever there is anything at all.
+                let most = marched.samples - u64::from(!matches!(settings.mode, Mode::Mean | Mode::XRay));
+                if leapt.samples > most || leapt.map_reads == 0 {
+                    let [leapt, marched] = [&leapt, &marched].map(|cast| cast.samples);
+                    failures.push(format!("{name}, {what}: {leapt} of {marched} samples"));
+                }
+            };
+            if matches!(settings.mode, Mode::Mip | Mode::MinIp) {
+                compare("idle blocks", cast(Leap::IdleBlocks(builder.values())));
+                continue;
+            }
+            for structure in [Structure::Distance, Structure::Anisotropic] {
+                let map = builder.map(gpu, &parameters, structure).unwrap();
+                compare(&format!("{structure:?}"), cast(Leap::EmptyBlocks(&map)));
+            }
+        }
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
     });
 }
