@@ -1,7 +1,7 @@
 //! `render`: a volume file to a picture.
 
 use crate::backend::{
-    BackendChoice, Engine, GradientMapSize, Job, Leaping, median, milliseconds, note_fallback,
+    BackendChoice, Engine, GradientMapSize, Job, Leaping, Shot, median, milliseconds, note_fallback,
 };
 use crate::camera::{CameraArgs, Stereo};
 use crate::failure::Failure;
@@ -15,7 +15,6 @@ use crate::spec::{self, Show};
 use crate::volume_args::VolumeArgs;
 use clap::Args;
 use serde_json::json;
-use std::num::NonZeroU32;
 use std::path::PathBuf;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::{Image, RgbImage};
@@ -61,8 +60,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
     turntable: Option<u32>,
 
-    /// What to write: picture, or samples: how much each ray has read, black for nothing and white for the most, or for N
-    /// (samples:N).
+    /// What to write: picture, or samples: how much each ray has read, black for nothing and white for the most of any
+    /// picture of a turntable, or for N (samples:N).
     #[arg(long, value_name = "WHAT", default_value = "picture", value_parser = spec::show)]
     show: Show,
 
@@ -158,7 +157,7 @@ impl RenderArgs {
             frames_ms: Vec::new(),
             samples: 0,
             map_reads: 0,
-            white: None,
+            white: self.white_of_all(engine, shot)?,
             leaping: engine.leaping(shot).clone(),
             gradient_map: engine.gradient_map_size(shot),
             picture_size: [0; 2],
@@ -168,15 +167,14 @@ impl RenderArgs {
             engine.cast(shot, &self.camera.views(0.0)?)?;
         }
         for index in 0..frames {
-            let turn_deg = self.turntable.map_or(0.0, |n| 360.0 / f64::from(n) * f64::from(index));
+            let turn_deg = self.turntable.map_or(0.0, |frames| turn_deg(index, frames));
             made.frames_ms.push(milliseconds(engine.cast(shot, &self.camera.views(turn_deg)?)?));
             if let Some(path) = self.path_of(index, frames) {
                 let casts = engine.read()?;
                 let picture = match self.show {
                     Show::Picture => self.arrange(casts.iter().map(|cast| &cast.image)),
-                    Show::Samples(white) => {
-                        let white = white.map_or_else(|| most_reads(&casts), NonZeroU32::get);
-                        made.white = Some(white);
+                    Show::Samples(_) => {
+                        let white = *made.white.get_or_insert_with(|| most_reads(&casts));
                         let maps: Vec<Image> = casts.iter().map(|cast| heat_map(cast, white)).collect();
                         self.arrange(&maps)
                     }
@@ -190,6 +188,22 @@ impl RenderArgs {
             bar.advance();
         }
         Ok(made)
+    }
+
+    /// Samples and map reads of a white pixel in all pictures: those asked for, or the most of any ray of a turntable.
+    fn white_of_all(&self, engine: &mut Engine<'_>, shot: Shot) -> Result<Option<u32>, Failure> {
+        match (self.show, self.turntable) {
+            (Show::Samples(Some(white)), _) => Ok(Some(white.get())),
+            (Show::Samples(None), Some(frames)) => {
+                let mut most = 0;
+                for index in 0..frames {
+                    engine.cast(shot, &self.camera.views(turn_deg(index, frames))?)?;
+                    most = most.max(most_reads(&engine.read()?));
+                }
+                Ok(Some(most))
+            }
+            (Show::Samples(None) | Show::Picture, _) => Ok(None),
+        }
     }
 
     fn arrange<'i>(&self, images: impl IntoIterator<Item = &'i Image>) -> RgbImage {
@@ -253,6 +267,11 @@ impl RenderArgs {
         }
         Ok(())
     }
+}
+
+/// How far the eye has turned in a picture of a turntable.
+fn turn_deg(index: u32, frames: u32) -> f64 {
+    360.0 / f64::from(frames) * f64::from(index)
 }
 
 fn described(outputs: &[PathBuf]) -> String {

@@ -133,6 +133,23 @@ fn a_heat_map_is_white_where_most_is_read() {
 }
 
 #[test]
+fn heat_maps_of_a_turntable_have_one_scale() {
+    let bench = Bench::new();
+    let white = |flags: &[&str]| {
+        let heat_map = ["--show", "samples", "--skip", "none", "--json"];
+        bench.render("h.png", &[&heat_map[..], flags].concat()).json()["white"].as_u64().unwrap()
+    };
+    let alone = ["0", "120", "240"].map(|azimuth| white(&["--azimuth", azimuth]));
+    assert_ne!(alone[0], alone[1], "the rays of a turned cube are longer");
+    assert_eq!(Some(white(&["--turntable", "3"])), alone.into_iter().max());
+    let is_white = |name| {
+        let picture = image::open(bench.path(name)).unwrap().into_rgb8();
+        picture.pixels().any(|pixel| pixel.0 == [255; 3])
+    };
+    assert!(!is_white("h_0000.png") && (is_white("h_0001.png") || is_white("h_0002.png")));
+}
+
+#[test]
 fn clipping_and_background_show() {
     let bench = Bench::new();
     let at = |name: &str, x, y| image::open(bench.path(name)).unwrap().into_rgb8().get_pixel(x, y).0;
