@@ -211,7 +211,7 @@ fn rays_in_segments_leap_as_they_march() {
             let transfer = TransferFunction::ramp(0.55, 0.9).unwrap();
             let settings = Settings { sampling_factor, transfer, ..settings };
             let parameters = CastParameters::new(&settings, &placement(&volume));
-            let mut cast = |leap| {
+            let mut cast = |leap: Leap<'_>| {
                 let sources = Sources { leap, ..Sources::volume(&uploaded) };
                 let prepared = renderer.prepare(gpu, &sources, parameters.clone()).unwrap();
                 renderer.render_to_host(gpu, &prepared, &[view()]).unwrap().remove(0)
