@@ -47,7 +47,11 @@ impl Leap<'_> {
         let of_leap = match self {
             Self::Nothing => LeapUniform::default(),
             Self::EmptyBlocks(map) => LeapUniform {
-                skip_margin: margin_blocks(parameters, map.grid().block_size()) as f32,
+                skip_margin: margin_blocks(
+                    parameters.classifier,
+                    f64::from(parameters.sampling_factor).recip(),
+                    map.grid().block_size(),
+                ) as f32,
                 octant_slices: match map.structure() {
                     Structure::Anisotropic => map.grid().dims()[2] as i32,
                     Structure::Occupancy | Structure::Distance => 0,

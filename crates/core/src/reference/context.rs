@@ -45,11 +45,10 @@ impl<'a> Context<'a> {
         leap: Leap<'a>,
     ) -> Self {
         let dims = sampler.dims();
-        let skip_for = |step_length: f32| match leap {
+        let skip_for = |step_voxels: f32| match leap {
             Leap::Nothing | Leap::IdleBlocks(_) => None,
             Leap::EmptyBlocks(map) => {
-                let is_preintegrated = parameters.classifier == Classifier::PreIntegrated;
-                Some(SkipSampler::over_empty_blocks(map, parameters.mode, is_preintegrated, step_length))
+                Some(SkipSampler::over_empty_blocks(map, parameters.classifier, step_voxels))
             }
         };
         let skip = skip_for(parameters.sampling_factor.recip());

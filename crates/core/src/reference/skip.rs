@@ -4,8 +4,8 @@ use super::extreme_value::Better;
 use super::lanes::{Lanes, Mask};
 use super::ray::Ray;
 use super::vector::Vec3;
-use crate::scene::Mode;
-use crate::skip::{BlockExtremes, BlockGrid, SkipMap, Structure};
+use crate::cast::Classifier;
+use crate::skip::{BlockExtremes, BlockGrid, SkipMap, Structure, margin_blocks};
 use glam::Vec3A;
 use std::marker::PhantomData;
 
@@ -103,23 +103,10 @@ pub(super) struct SkipSampler<M> {
 
 impl<'a> SkipSampler<Distances<'a>> {
     /// Reads a map for rays with the given length of a step, in voxel lengths.
-    pub(super) fn over_empty_blocks(
-        map: &'a SkipMap,
-        mode: Mode,
-        is_preintegrated: bool,
-        step_length: f32,
-    ) -> Self {
-        let sides = map.grid().block_size().sides();
-        let shortest = sides.into_iter().fold(f32::INFINITY, |shortest, side| shortest.min(side as f32));
-        // Both ends of a pre-integrated step may be half a voxel, that of the halo, away from the block. Neighbouring
-        // samples in empty blocks are on the same side of an isovalue if the blocks touch.
-        let margin = match mode {
-            Mode::Isosurface { .. } => (step_length / shortest).ceil() - 1.0,
-            _ if is_preintegrated => (0.5 * (step_length - 1.0) / shortest).ceil(),
-            _ => 0.0,
-        };
-        let reads_behind = matches!(mode, Mode::Isosurface { .. }) || margin > 0.0;
-        Self::new(Distances { map, margin: margin.max(0.0) }, reads_behind)
+    pub(super) fn over_empty_blocks(map: &'a SkipMap, classifier: Classifier, step_voxels: f32) -> Self {
+        let margin = margin_blocks(classifier, f64::from(step_voxels), map.grid().block_size());
+        let reads_behind = classifier == Classifier::Isovalue || margin > 0;
+        Self::new(Distances { map, margin: margin as f32 }, reads_behind)
     }
 }
 
