@@ -13,9 +13,15 @@ pub(super) struct Pixels<L> {
     pub(super) alpha: L,
     /// Depth of the first hit, metres; infinite without one.
     pub(super) depth_m: L,
-    /// Samples taken along the ray, those of shading not counted.
+    pub(super) taken: Taken<L>,
+}
+
+/// What rays have read, for shading not counted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Taken<L> {
+    /// Samples taken along the ray.
     pub(super) samples: L,
-    /// Reads of the skip map along the ray, those of shading not counted.
+    /// Reads of the skip map along the ray.
     pub(super) map_reads: L,
 }
 

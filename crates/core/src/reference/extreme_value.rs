@@ -1,6 +1,6 @@
 //! Maximum and minimum intensity projection; the first of equal extremes gives the depth.
 
-use super::accumulate::{Accumulate, Pixels};
+use super::accumulate::{Accumulate, Pixels, Taken};
 use super::context::Context;
 use super::lanes::{Lanes, Mask};
 use super::lut::lut_at;
@@ -82,8 +82,7 @@ impl<B: Better> ExtremeValue<B> {
             rgb: lut_at(&context.parameters.lut, token, best).rgb,
             alpha: one,
             depth_m: ray.depth_m(best_index),
-            samples,
-            map_reads: walk.map_reads,
+            taken: Taken { samples, map_reads: walk.map_reads },
         }
     }
 }

@@ -1,6 +1,6 @@
 //! First crossing of the isovalue, in either direction.
 
-use super::accumulate::{Accumulate, Pixels};
+use super::accumulate::{Accumulate, Pixels, Taken};
 use super::classify::{Classify, Isovalue};
 use super::context::Context;
 use super::lanes::{Lanes, Mask};
@@ -39,8 +39,7 @@ impl Accumulate for FirstHit {
             rgb: Vec3::splat(token, Vec3A::ZERO),
             alpha: zero,
             depth_m: L::splat(token, f32::INFINITY),
-            samples,
-            map_reads: walk.map_reads,
+            taken: Taken { samples, map_reads: walk.map_reads },
         };
         if !is_found.any() {
             return miss;

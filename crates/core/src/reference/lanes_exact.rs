@@ -9,6 +9,18 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(super) struct Exact(f64);
 
+impl From<f64> for Exact {
+    fn from(number: f64) -> Self {
+        Self(number)
+    }
+}
+
+impl From<Exact> for f64 {
+    fn from(lane: Exact) -> Self {
+        lane.0
+    }
+}
+
 impl Mask for bool {
     #[inline(always)]
     fn any(self) -> bool {

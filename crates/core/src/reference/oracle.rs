@@ -1,6 +1,6 @@
 //! What a ray would read that knew what lies before it: the bound that structures are measured against.
 
-use super::accumulate::{Accumulate, Pixels};
+use super::accumulate::{Accumulate, Pixels, Taken};
 use super::classify::Classify;
 use super::context::Context;
 use super::lanes::{Lanes, Mask};
@@ -37,8 +37,7 @@ impl<C: Classify> Accumulate for Oracle<C> {
             rgb: Vec3::splat(token, Vec3A::ZERO),
             alpha: zero,
             depth_m: L::splat(token, f32::INFINITY),
-            samples,
-            map_reads: runs,
+            taken: Taken { samples, map_reads: runs },
         }
     }
 }

@@ -34,10 +34,10 @@ pub(super) struct PixelRay {
 }
 
 impl PixelRay {
-    /// The ray of a pixel; its centre is at (x + ½, y + ½).
+    /// The ray through a picture position, in pixels from the top left; pixel (x, y) has its centre at (x + ½, y + ½).
     #[inline(always)]
-    pub(super) fn new(rays: &RayField, parameters: &CastParameters, x: usize, y: usize) -> Self {
-        let (origin, direction) = rays.at(x as f64 + 0.5, y as f64 + 0.5);
+    pub(super) fn new(rays: &RayField, parameters: &CastParameters, x: f64, y: f64) -> Self {
+        let (origin, direction) = rays.at(x, y);
         let (near, far) = visible_interval(origin, direction, rays.depth_range_m, parameters);
         if near >= far {
             return Self::default();
@@ -57,6 +57,12 @@ impl PixelRay {
             to_eye: -metric_direction / metres_to_voxel_lengths.max(PARALLEL),
         }
     }
+
+    /// Without the samples behind a depth, metres.
+    pub(super) fn until(self, depth_m: f64) -> Self {
+        let within = ((depth_m - self.first_depth_m) / self.step_depth_m).ceil() + 1.0;
+        Self { sample_count: self.sample_count.min(within as u32), ..self }
+    }
 }
 
 /// The rays of a packet, in voxel space.
@@ -73,7 +79,7 @@ pub(super) struct Ray<L> {
     /// Depth of sample 0, metres.
     first_depth_m: L,
     /// Depth of a step, metres.
-    step_depth_m: L,
+    pub(super) step_depth_m: L,
     /// Unit vector back to the eye, metric space.
     pub(super) to_eye: Vec3<L>,
 }

@@ -130,7 +130,7 @@ impl Caster {
         views.iter().map(|view| cast_view(path, &context, view)).collect()
     }
 
-    fn context<'a>(&'a self, parameters: &'a CastParameters, aids: &Aids<'a>) -> Context<'a> {
+    pub(super) fn context<'a>(&'a self, parameters: &'a CastParameters, aids: &Aids<'a>) -> Context<'a> {
         let normalised_from_stored = self.encoding.normalised_from_stored(parameters.window);
         let gradient_map = aids.gradient_map.map(|map| map.sampler(normalised_from_stored.0));
         let sampler = Sampler::new(&self.voxels, normalised_from_stored);
@@ -240,7 +240,8 @@ fn cast_packets<A: Accumulate, L: Lanes>(
         let mut is_hit = false;
         for row in 0..rows.min(band.color.len() / band.width) {
             for column in 0..columns.min(band.width - left) {
-                let ray = PixelRay::new(rays, context.parameters, left + column, band.top + row);
+                let (x, y) = ((left + column) as f64 + 0.5, (band.top + row) as f64 + 0.5);
+                let ray = PixelRay::new(rays, context.parameters, x, y);
                 is_hit |= ray.sample_count > 0;
                 packet[row * columns + column] = ray;
             }
@@ -251,7 +252,7 @@ fn cast_packets<A: Accumulate, L: Lanes>(
         let pixels = A::cast::<L>(context, token, &Ray::new(token, dims, &packet));
         let [r, g, b] = [pixels.rgb.x, pixels.rgb.y, pixels.rgb.z].map(L::to_array);
         let (alpha, depth_m) = (pixels.alpha.to_array(), pixels.depth_m.to_array());
-        let (samples, map_reads) = (pixels.samples.to_array(), pixels.map_reads.to_array());
+        let (samples, map_reads) = (pixels.taken.samples.to_array(), pixels.taken.map_reads.to_array());
         for (lane, _) in packet.iter().enumerate().filter(|(_, ray)| ray.sample_count > 0) {
             let pixel = lane / columns * band.width + left + lane % columns;
             band.color[pixel] = [r[lane], g[lane], b[lane], alpha[lane]];

@@ -1,6 +1,6 @@
 //! Projections by the sum of the values.
 
-use super::accumulate::{Accumulate, Pixels};
+use super::accumulate::{Accumulate, Pixels, Taken};
 use super::context::Context;
 use super::lanes::{Lanes, Mask};
 use super::lut::lut_at;
@@ -39,22 +39,49 @@ impl Projection for XRay {
 impl<P: Projection> Accumulate for ValueSum<P> {
     #[inline(always)]
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
-        let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-        let (mut sum, mut samples) = (zero, zero);
-        let mut walk = Walk::along(token, ray, context.skip);
-        while walk.is_active.any() {
-            walk.leap(token, walk.is_active, zero);
-            sum += L::select(walk.is_active, context.value_at(token, ray.at(walk.index)), zero);
-            samples += L::select(walk.is_active, one, zero);
-            walk.advance();
-        }
-        let value = P::value(context, token, ray, sum).min(one);
-        Pixels {
-            rgb: lut_at(&context.parameters.lut, token, value).rgb,
-            alpha: one,
-            depth_m: ray.depth_m(zero),
-            samples,
-            map_reads: walk.map_reads,
-        }
+        let mut sum = L::splat(token, 0.0);
+        let taken = each_value(
+            context,
+            token,
+            ray,
+            #[inline(always)]
+            |_, value| sum += value,
+        );
+        let value = P::value(context, token, ray, sum);
+        pixels(context, token, value, ray.depth_m(L::splat(token, 0.0)), taken)
     }
+}
+
+/// Visits samples by index and value; the value is 0 for rays that have ended.
+#[inline(always)]
+pub(super) fn each_value<L: Lanes>(
+    context: &Context<'_>,
+    token: L::Token,
+    ray: &Ray<L>,
+    mut visit: impl FnMut(L, L),
+) -> Taken<L> {
+    let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
+    let mut samples = zero;
+    let mut walk = Walk::along(token, ray, context.skip);
+    while walk.is_active.any() {
+        walk.leap(token, walk.is_active, zero);
+        let value = context.value_at(token, ray.at(walk.index));
+        visit(walk.index, L::select(walk.is_active, value, zero));
+        samples += L::select(walk.is_active, one, zero);
+        walk.advance();
+    }
+    Taken { samples, map_reads: walk.map_reads }
+}
+
+/// Opaque pixels of projected values, seen at a depth.
+#[inline(always)]
+pub(super) fn pixels<L: Lanes>(
+    context: &Context<'_>,
+    token: L::Token,
+    value: L,
+    depth_m: L,
+    taken: Taken<L>,
+) -> Pixels<L> {
+    let one = L::splat(token, 1.0);
+    Pixels { rgb: lut_at(&context.parameters.lut, token, value.min(one)).rgb, alpha: one, depth_m, taken }
 }

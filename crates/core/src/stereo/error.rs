@@ -1,5 +1,6 @@
 //! Why a pair of views cannot share rays.
 
+use crate::scene::Mode;
 use thiserror::Error;
 
 /// Why the picture of one eye cannot be derived from the rays of the other. Two casts always can make the pair.
@@ -60,5 +61,16 @@ pub enum StereoError {
         reference: [f64; 2],
         /// Near and far of the derived view, metres.
         derived: [f64; 2],
+    },
+    /// A mode whose samples do not add up.
+    #[error("mode {0:?}: only composites and X-rays can be derived")]
+    Mode(Mode),
+    /// Rays far beyond the picture's edges are needed: the volume comes too near to the eyes, or the windows are far apart.
+    #[error("{needed} columns of rays are needed, but at most {most} are cast: move the near plane away")]
+    Columns {
+        /// Columns that the pair needs.
+        needed: usize,
+        /// Columns that are cast.
+        most: usize,
     },
 }

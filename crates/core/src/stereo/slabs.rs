@@ -52,6 +52,11 @@ impl Slabs {
         self.depths_m(column).start..self.depths_m(column.saturating_sub(last)).end
     }
 
+    /// How far right of its slab's largest shift a sample lands, columns from 0 to 1, by its depth in metres.
+    pub fn fraction(&self, slab: i32, depth_m: f64) -> f64 {
+        (f64::from(slab) + self.offset - self.k / depth_m).clamp(0.0, 1.0)
+    }
+
     /// Where a slab starts; not before infinity if no depth moves that far.
     fn start_m(&self, slab: i32) -> f64 {
         let over = f64::from(slab) + self.offset;

@@ -10,6 +10,7 @@ mod lanes;
 mod oracle;
 mod orientation;
 mod properties;
+mod reprojection;
 mod resolution;
 mod scene;
 mod shading;

@@ -17,7 +17,9 @@ use wheatstone_core::volume::{Encoding, Grid, StorageKind, Volume, Voxels};
 const STRUCTURES: [Structure; 3] = [Structure::Occupancy, Structure::Distance, Structure::Anisotropic];
 
 /// Few things in much that is empty: small boxes of random values in a constant background or one of faint noise.
-fn sparse_volumes(side: impl Strategy<Value = usize>) -> impl Strategy<Value = (Volume, StorageKind)> {
+pub(crate) fn sparse_volumes(
+    side: impl Strategy<Value = usize>,
+) -> impl Strategy<Value = (Volume, StorageKind)> {
     let dims = prop::array::uniform3(side);
     let lo = prop::array::uniform3(0.0..1.0_f64);
     let sides = prop::array::uniform3(prop_oneof![3 => 1_usize..4, 1 => 1_usize..20]);
@@ -64,7 +66,7 @@ fn views() -> impl Strategy<Value = View> {
 }
 
 /// Ramps, plateaus between gaps, spikes one entry wide, steps, nothing at all.
-fn gapped_transfers() -> impl Strategy<Value = TransferFunction> {
+pub(crate) fn gapped_transfers() -> impl Strategy<Value = TransferFunction> {
     let alphas = |points: &[(f32, f32)]| -> Vec<OpacityPoint> {
         points.iter().map(|&(at, alpha)| OpacityPoint { at, alpha }).collect()
     };
@@ -130,7 +132,7 @@ fn looks() -> impl Strategy<Value = Settings> {
     )
 }
 
-fn map(
+pub(crate) fn map(
     volume: &Volume,
     kind: StorageKind,
     parameters: &CastParameters,
@@ -150,7 +152,7 @@ fn map(
     SkipMap::new(&occupancy, structure)
 }
 
-fn bits(cast: &Cast) -> (Vec<[u32; 4]>, Vec<u32>) {
+pub(crate) fn bits(cast: &Cast) -> (Vec<[u32; 4]>, Vec<u32>) {
     let color = cast.image.color.iter().map(|c| c.map(f32::to_bits)).collect();
     (color, cast.image.depth_m.iter().map(|d| d.to_bits()).collect())
 }

@@ -54,3 +54,19 @@ pub(crate) const GRADIENT_MAP_DSSIM: f64 = 0.01;
 
 /// DSSIM of pictures by magnitudes of 8 and of 16 bits: half a 255th of the largest magnitude.
 pub(crate) const GRADIENT_CODES_DSSIM: f64 = 1e-3;
+
+/// DSSIM of a derived picture and its own cast: half a pixel's shift of each sample; the project's promise.
+pub(crate) const DERIVED_DSSIM: f64 = 0.002;
+
+/// DSSIM of a small picture derived with the eye in the volume, where samples are dozens of columns wide.
+pub(crate) const INSIDE_DSSIM: f64 = 0.03;
+
+/// Mean error of a box's derived opacity: half a pixel's shift at its edges, most of all.
+pub(crate) const DERIVED_MEAN_OPACITY: f64 = 0.006;
+
+/// Error of a box's derived opacity where it changes little from column to column: the samples of rays that diverge from
+/// the derived ones by a few degrees are a little longer or shorter.
+pub(crate) const DERIVED_OPACITY: f64 = 0.01;
+
+/// The same if each sample is in one slab as a whole: about one sample more or less.
+pub(crate) const DERIVED_OPACITY_OF_WHOLE_SAMPLES: f64 = 0.04;

@@ -1,0 +1,51 @@
+//! Light gathered front to back.
+
+use super::accumulate::{Pixels, Taken};
+use super::lanes::Lanes;
+use super::vector::Vec3;
+use crate::cast::FIRST_HIT_ALPHA;
+use glam::Vec3A;
+
+/// What rays, or parts of them, have gathered so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gathered<L> {
+    /// Premultiplied colour.
+    pub(super) rgb: Vec3<L>,
+    /// What passes.
+    pub(super) transmittance: L,
+    /// Depth of the first hit, metres; infinite without one.
+    pub(super) depth_m: L,
+}
+
+impl<L: Lanes> Gathered<L> {
+    #[inline(always)]
+    pub(super) fn nothing(token: L::Token) -> Self {
+        Self {
+            rgb: Vec3::splat(token, Vec3A::ZERO),
+            transmittance: L::splat(token, 1.0),
+            depth_m: L::splat(token, f32::INFINITY),
+        }
+    }
+
+    /// Adds a sample behind what has been gathered.
+    #[inline(always)]
+    pub(super) fn add(&mut self, token: L::Token, rgb: Vec3<L>, transmittance: L) {
+        self.rgb = rgb.mul_add((L::splat(token, 1.0) - transmittance) * self.transmittance, self.rgb);
+        self.transmittance *= transmittance;
+    }
+
+    /// Keeps a depth, metres, if it is the first at which so little passes that there is a hit.
+    #[inline(always)]
+    pub(super) fn note_hit(&mut self, token: L::Token, transmittance: L, depth_m: L) {
+        let is_first = L::splat(token, f32::INFINITY).le(self.depth_m);
+        let is_hit = is_first & transmittance.le(L::splat(token, 1.0 - FIRST_HIT_ALPHA));
+        self.depth_m = L::select(is_hit, depth_m, self.depth_m);
+    }
+
+    /// The pixels that it makes.
+    #[inline(always)]
+    pub(super) fn pixels(self, token: L::Token, taken: Taken<L>) -> Pixels<L> {
+        let alpha = L::splat(token, 1.0) - self.transmittance;
+        Pixels { rgb: self.rgb, alpha, depth_m: self.depth_m, taken }
+    }
+}
