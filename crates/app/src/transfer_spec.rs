@@ -110,7 +110,10 @@ impl TransferSpec {
                 let window = chosen.or_else(recommended).unwrap_or(full);
                 Resolved { transfer: preset.transfer(window).context("--tf")?, window }
             }
-            Self::Benchmark(benchmark) => ramp(benchmark.transfer(volume.grid().dims()).context("--tf")?),
+            Self::Benchmark(benchmark) => Resolved {
+                transfer: benchmark.transfer(volume.grid().dims()).context("--tf")?,
+                window: chosen.or(benchmark.window()).unwrap_or(full),
+            },
             Self::File(path) => {
                 let file = read_file(path)?;
                 Resolved { transfer: file.transfer, window: chosen.or(file.window).unwrap_or(full) }
@@ -133,6 +136,15 @@ fn read_file(path: &Path) -> Result<TransferFile, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wheatstone_core::phantom::Phantom;
+
+    #[test]
+    fn ramps_of_phantoms_are_for_all_eight_bits() {
+        let volume = Phantom::Present.volume([8; 3]).unwrap();
+        let window = |name: &str| parse(name).unwrap().resolve(&volume, None).unwrap().window;
+        assert_eq!(window("present-1d"), Window::new(0.0, 255.0).unwrap());
+        assert_eq!(window("bonsai"), volume.full_window());
+    }
 
     #[test]
     fn specs_come_back() {

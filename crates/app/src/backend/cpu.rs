@@ -105,7 +105,10 @@ impl<'v> CpuEngine<'v> {
         let ranges = self.ranges(gradients, plan.block_size);
         let values = ranges.values.normalised(self.normalised_from_stored(parameters));
         if let Some(extremes) = BlockExtremes::new(values, parameters.mode) {
-            let leaping = Leaping::over_idle_blocks(plan, extremes.byte_size() as u64);
+            let leaping = Leaping {
+                ranges_bytes: ranges.byte_size() as u64,
+                ..Leaping::over_idle_blocks(plan, extremes.byte_size() as u64)
+            };
             return (Structures::Extremes(extremes), leaping);
         }
         let occupancy = self.occupancy(&ranges, parameters, gradients);

@@ -52,6 +52,8 @@ pub(crate) fn run(args: &DoctorArgs) -> Result<(), Failure> {
     let [x, y, z] = EXAMPLE_DIMS;
     let structures = described(&structures(EXAMPLE_DIMS, StorageKind::U8));
     lines.push(format!("empty space in {x}×{y}×{z} 8-bit voxels: {structures}"));
+    let mebibytes = gradient_map_bytes(EXAMPLE_DIMS, StorageKind::U8) >> 20;
+    lines.push(format!("gradient map of it, for 2D transfer functions: {mebibytes} MiB"));
     print(&lines.join("\n"))
 }
 

@@ -72,6 +72,7 @@ fn as_text(loaded: &Loaded, statistics: &Statistics) -> String {
     let [sx, sy, sz] = grid.spacing_mm().to_array().map(short);
     let [mx, my, mz] = grid.size_mm().to_array().map(short);
     let robust = statistics.robust_window();
+    let storage = StorageKind::lossless_for(volume);
     let percentiles: Vec<String> =
         PERCENTILES.iter().map(|&p| format!("{p} %: {}", short(statistics.percentile(p)))).collect();
     [
@@ -85,7 +86,11 @@ fn as_text(loaded: &Loaded, statistics: &Statistics) -> String {
         format!("mean           {}", short(statistics.mean())),
         format!("percentiles    {}", percentiles.join(", ")),
         format!("robust window  {} .. {}", short(robust.lo()), short(robust.hi())),
-        format!("empty space    {}", described(&structures(grid.dims(), StorageKind::lossless_for(volume)))),
+        format!("empty space    {}", described(&structures(grid.dims(), storage))),
+        format!(
+            "gradient map   {} KiB, for 2D transfer functions",
+            gradient_map_bytes(grid.dims(), storage) / 1024
+        ),
     ]
     .join("\n")
 }

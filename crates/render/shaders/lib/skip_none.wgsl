@@ -17,6 +17,10 @@ fn next_run(walk: Walk, begin: u32, end: u32, scalar: f32) -> Run {
     return Run(begin, end, 0u);
 }
 
+fn next_beyond_empty(walk: Walk, sample: u32) -> u32 {
+    return sample + 1u;
+}
+
 fn is_empty_at(position: vec3f) -> bool {
     return false;
 }

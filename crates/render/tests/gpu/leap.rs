@@ -11,7 +11,7 @@ use wheatstone_core::scene::{Light, Mode, Settings, Shading};
 use wheatstone_core::skip::{BlockSize, Structure};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
-use wheatstone_core::volume::{Volume, VoxelType};
+use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels, Window};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
 use wheatstone_render::{Gpu, GpuGradientMap, GpuVolume, Leap, Renderer, Sources, TexelFormat};
 
@@ -145,4 +145,29 @@ fn leaping_changes_no_picture() {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     assert!(samples_saved > 1_000_000, "only {samples_saved} samples were left out");
+}
+
+/// Floats have codes between their smallest and largest; here they are one number.
+#[test]
+fn a_volume_of_one_value_is_not_skipped() {
+    let grid = Grid::centred([9, 8, 7], [1.0; 3]).unwrap();
+    let volume = Volume::new(grid, Voxels::F32(vec![5.0; 9 * 8 * 7])).unwrap();
+    let mut settings =
+        Settings::new(Window::new(0.0, 10.0).unwrap(), TransferFunction::ramp(0.0, 1.0).unwrap());
+    settings.early_termination = None;
+    let parameters = CastParameters::new(&settings, &placement(&volume));
+    on_device(|gpu, renderer| {
+        let kernels = SkipKernels::new(gpu).unwrap();
+        let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
+        let mut builder = SkipBuilder::new(gpu, &kernels, &uploaded, BlockSize::cube(4).unwrap()).unwrap();
+        let map = builder.map(gpu, &parameters, Structure::Distance).unwrap();
+        let mut cast = |leap: Leap<'_>| {
+            let sources = Sources { leap, ..Sources::volume(&uploaded) };
+            let prepared = renderer.prepare(gpu, &sources, parameters.clone()).unwrap();
+            renderer.render_to_host(gpu, &prepared, &[outside()]).unwrap().remove(0)
+        };
+        let (every_sample, leapt) = (cast(Leap::Nothing), cast(Leap::EmptyBlocks(&map)));
+        assert!(every_sample.image.color.iter().any(|pixel| pixel[3] > 0.5));
+        assert!(largest_difference(&every_sample, &leapt) <= LARGEST_DIFFERENCE);
+    });
 }
