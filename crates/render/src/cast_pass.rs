@@ -185,7 +185,8 @@ impl Variant {
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 10] {
+    /// The file of each slot.
+    pub(crate) fn choices(&self) -> [(&'static str, &'static str); 10] {
         [
             ("lib/accumulate", self.accumulator),
             ("lib/classify", self.classifier),
@@ -286,29 +287,35 @@ impl CastPass {
         if let Some(pipeline) = self.pipelines.get(&variant) {
             return Ok(pipeline.clone());
         }
-        let pipeline = build_pipeline(&gpu.device, &self.layout, variant)?;
+        let pipeline = build(&gpu.device, &self.layout, "cast", &variant.choices(), "cast_rays")?;
         gpu.check()?;
         self.pipelines.insert(variant, pipeline.clone());
         Ok(pipeline)
     }
 }
 
-fn build_pipeline(
+/// Builds a pipeline from a root file and the files of its slots; what the driver says against it comes with the next
+/// [`Gpu::check`].
+///
+/// # Errors
+/// [`GpuError::Refused`] for files that make no module.
+pub(crate) fn build(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
-    variant: Variant,
+    root: &str,
+    choices: &[(&str, &str)],
+    entry_point: &str,
 ) -> Result<wgpu::ComputePipeline, GpuError> {
-    let source = compose("cast", &variant.choices())
-        .map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+    let source = compose(root, choices).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("cast"),
+        label: Some(root),
         source: wgpu::ShaderSource::Wgsl(source.text.into()),
     });
     Ok(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("cast"),
+        label: Some(root),
         layout: Some(layout),
         module: &module,
-        entry_point: Some("cast_rays"),
+        entry_point: Some(entry_point),
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     }))
@@ -378,7 +385,7 @@ mod tests {
         let pass = CastPass::new(&device, &GroupLayouts::new(&device));
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         for variant in Variant::all() {
-            build_pipeline(&device, &pass.layout, variant).unwrap();
+            build(&device, &pass.layout, "cast", &variant.choices(), "cast_rays").unwrap();
         }
         if let Some(error) = pollster::block_on(scope.pop()) {
             panic!("{error}");

@@ -99,7 +99,8 @@ pub(crate) fn storage_buffer(smallest: u64) -> wgpu::BindingType {
     buffer(wgpu::BufferBindingType::Storage { read_only: false }, smallest)
 }
 
-fn uniform<T>() -> wgpu::BindingType {
+/// A uniform buffer that holds a `T`.
+pub(crate) fn uniform<T>() -> wgpu::BindingType {
     buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
 }
 

@@ -23,7 +23,7 @@ const SHORTEST_TIMED: Duration = Duration::from_millis(2);
 
 /// Loop iterations that a shader may run per invocation: Mesa 22's software Vulkan silently stops at about
 /// 65,000, summed over nested loops.
-const ITERATION_LIMIT: u32 = 60_000;
+pub(crate) const ITERATION_LIMIT: u32 = 60_000;
 
 /// Rows that a piece is a whole number of: the side of a workgroup, `BAND_ROWS` of `cast.wgsl`.
 pub(crate) const BAND_ROWS: u32 = 8;

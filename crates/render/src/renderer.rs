@@ -5,18 +5,28 @@ use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
-use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
+use crate::pacer::{
+    BAND_ROWS, ITERATION_LIMIT, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride,
+};
+use crate::stereo::{PairError, StripPass};
 use crate::target::Target;
 use crate::tile_pass::{self, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
+use glam::DVec3;
 use half::f16;
+use std::ops::Range;
 use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
+use wheatstone_core::scene::Mode;
+use wheatstone_core::stereo::Epipolar;
 use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
 use wheatstone_core::view::{PixelRect, View};
+
+/// Rays that software Vulkan casts in lockstep; each may wait for the others.
+const LOCKSTEP_RAYS: u32 = 8;
 
 /// Most bytes of ray states between dispatches.
 const MOST_STATE_BYTES: u64 = 64 << 20;
@@ -27,6 +37,7 @@ pub struct Renderer {
     groups: GroupLayouts,
     cast_pass: CastPass,
     tile_pass: TilePass,
+    strip_pass: StripPass,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
@@ -74,6 +85,7 @@ impl Renderer {
         let groups = GroupLayouts::new(&gpu.device);
         let cast_pass = CastPass::new(&gpu.device, &groups);
         let tile_pass = TilePass::new(&gpu.device, &groups)?;
+        let strip_pass = StripPass::new(&gpu.device, &groups)?;
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("trilinear"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -94,7 +106,7 @@ impl Renderer {
             })
             .create_view(&wgpu::TextureViewDescriptor::default());
         gpu.check()?;
-        Ok(Self { groups, cast_pass, tile_pass, sampler, no_map, pacer: Pacer::new() })
+        Ok(Self { groups, cast_pass, tile_pass, strip_pass, sampler, no_map, pacer: Pacer::new() })
     }
 
     /// Prepares a volume to be cast with some parameters.
@@ -203,6 +215,108 @@ impl Renderer {
         targets.iter().map(|target| target.read(gpu)).collect()
     }
 
+    /// Casts the reference view of a pair and derives the other from its rays (SP, by strips), into a target for each, and
+    /// waits until both are done. Returns the bytes of the partial sums.
+    ///
+    /// # Errors
+    /// What keeps the one view from being derived from the other; no memory, a lost or hung device.
+    ///
+    /// # Panics
+    /// If a target has another size than the views.
+    pub fn render_pair(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        epipolar: &Epipolar,
+        [reference, derived]: [&Target; 2],
+    ) -> Result<u64, PairError> {
+        let parameters = &prepared.parameters;
+        let size = epipolar.reference().size;
+        assert!(reference.size() == size && derived.size() == size, "targets have the size of their views");
+        if parameters.mode != Mode::Composite {
+            return Err(PairError::Mode);
+        }
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        reference.clear(&mut encoder);
+        derived.clear(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let corners = parameters.visible_corners_world();
+        let Some(depths_m) = epipolar.depths_m(&corners) else {
+            return Ok(0);
+        };
+        let slabs = epipolar.slabs().between(depths_m.start, depths_m.end);
+        let columns = epipolar.columns_of(&corners, &slabs.cast_columns(size[0]));
+        if columns.is_empty() {
+            return Ok(0);
+        }
+        let samples = parameters.most_samples_per_ray();
+        let iterations_per_ray = samples
+            .saturating_mul(prepared.iterations_per_sample)
+            .saturating_add(LOCKSTEP_RAYS * slabs.layers());
+        let most_columns = ITERATION_LIMIT / iterations_per_ray;
+        if most_columns == 0 {
+            return Err(PairError::LongRays { samples });
+        }
+        let pipeline = self.strip_pass.pipeline(gpu, prepared.variant)?;
+        let buffers = self.strip_pass.buffers(gpu, epipolar, slabs, &columns)?;
+        let [of_reference, of_derived] = [reference, derived].map(|target| self.target_group(gpu, target));
+
+        let is_software = gpu.description().is_software;
+        let covered = Squares::covered(epipolar.reference(), &corners);
+        let mut piece = ViewUniform::new(parameters, epipolar.reference());
+        piece.first_row = covered.bands.start * BAND_ROWS;
+        piece.row_count = covered.rows(size[1]);
+        piece.band_stride = if is_software { spreading_stride(covered.bands.len() as u32) } else { 1 };
+        gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
+        let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &of_reference };
+        for range in buffers.columns(most_columns) {
+            buffers.take(&gpu.queue, &range);
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            self.strip_pass.cast(&mut encoder, &pipeline, &bindings, &buffers, covered.bands.len() as u32);
+            gpu.queue.submit([encoder.finish()]);
+        }
+        gpu.wait()?;
+
+        let covered = Squares::covered(epipolar.derived(), &corners);
+        let piece = ViewUniform {
+            first_row: covered.bands.start * BAND_ROWS,
+            row_count: covered.rows(size[1]),
+            first_column: covered.columns.start * BAND_ROWS,
+            band_stride: 1,
+            ..piece
+        };
+        gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
+        let bindings = Bindings { target: &of_derived, ..bindings };
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.strip_pass.merge(&mut encoder, &bindings, &buffers, covered.counts());
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        Ok(buffers.byte_size())
+    }
+
+    /// The bindings of a target where rays are neither kept nor listed.
+    fn target_group(&self, gpu: &Gpu, target: &Target) -> wgpu::BindGroup {
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let (color, depth) = (view(&target.color), view(&target.depth));
+        let unused = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("unused"),
+            size: RAY_STATE_BYTES,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        let list = self.tile_pass.list(&gpu.device, [1, 1]);
+        bind(
+            &gpu.device,
+            &self.groups.target,
+            &[
+                wgpu::BindingResource::TextureView(&color),
+                wgpu::BindingResource::TextureView(&depth),
+                unused.as_entire_binding(),
+                list.tiles.as_entire_binding(),
+            ],
+        )
+    }
+
     /// Casts one view piece by piece: rows, and for rays that are too long for one dispatch ranges of samples.
     fn cast(&mut self, gpu: &Gpu, prepared: &Prepared, view: &View, target: &Target) -> Result<(), GpuError> {
         let parameters = &prepared.parameters;
@@ -237,19 +351,17 @@ impl Renderer {
         let reads = cast_pass::reads_per_sample(parameters);
         let bands = band_samples(parameters, view);
         let bands_with_states = if may_be_split { state_rows / BAND_ROWS } else { u32::MAX };
-        let covered = PixelRect::around(view, parameters.visible_corners_world());
-        let bands_covered = covered.rows.start / BAND_ROWS..covered.rows.end.div_ceil(BAND_ROWS);
-        let columns_covered = covered.columns.start / BAND_ROWS..covered.columns.end.div_ceil(BAND_ROWS);
+        let covered = Squares::covered(view, &parameters.visible_corners_world());
         let mut piece = ViewUniform::new(parameters, view);
-        piece.first_row = bands_covered.start * BAND_ROWS;
-        piece.first_column = columns_covered.start * BAND_ROWS;
+        piece.first_row = covered.bands.start * BAND_ROWS;
+        piece.first_column = covered.columns.start * BAND_ROWS;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         target.clear(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        let last_row = height.min(bands_covered.end * BAND_ROWS);
+        let last_row = height.min(covered.bands.end * BAND_ROWS);
         while piece.first_row < last_row {
             let budget = self.pacer.budget(reads);
-            let left = &bands[(piece.first_row / BAND_ROWS) as usize..bands_covered.end as usize];
+            let left = &bands[(piece.first_row / BAND_ROWS) as usize..covered.bands.end as usize];
             let left = &left[..left.len().min(bands_with_states as usize)];
             let (band_count, samples) = fitting_bands(left, budget);
             let share_of_ray = (budget / samples).min(1.0);
@@ -260,7 +372,7 @@ impl Renderer {
             let is_whole = piece.sample_limit == u32::MAX;
             let variant = if is_whole { prepared.variant } else { prepared.variant.in_parts() };
             let pipeline = self.cast_pass.pipeline(gpu, variant)?;
-            let squares = [columns_covered.len() as u32, band_count];
+            let squares = [covered.columns.len() as u32, band_count];
             while piece.first_sample < most_samples {
                 gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
                 let mut encoder =
@@ -284,6 +396,31 @@ impl Renderer {
             piece.first_row += piece.row_count;
         }
         Ok(())
+    }
+}
+
+/// Squares of `BAND_ROWS` pixels that a body can cover.
+struct Squares {
+    /// From the left.
+    columns: Range<u32>,
+    /// From the top.
+    bands: Range<u32>,
+}
+
+impl Squares {
+    fn covered(view: &View, corners_world: &[DVec3]) -> Self {
+        let covered = PixelRect::around(view, corners_world.iter().copied());
+        let squares = |pixels: Range<u32>| pixels.start / BAND_ROWS..pixels.end.div_ceil(BAND_ROWS);
+        Self { columns: squares(covered.columns), bands: squares(covered.rows) }
+    }
+
+    fn counts(&self) -> [u32; 2] {
+        [self.columns.len() as u32, self.bands.len() as u32]
+    }
+
+    /// Rows of pixels of a picture of the given height.
+    fn rows(&self, height: u32) -> u32 {
+        height.min(self.bands.end * BAND_ROWS).saturating_sub(self.bands.start * BAND_ROWS)
     }
 }
 

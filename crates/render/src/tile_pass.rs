@@ -3,10 +3,10 @@
 //! Software Vulkan runs the whole of a kernel for every eight rays in lockstep, also where all of them miss. A kernel that
 //! only finds that out is far cheaper; the cast is then sent to the others alone.
 
+use crate::cast_pass::build;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{Bindings, GroupLayouts, bind, layout, storage_buffer};
 use crate::leap::Leap;
-use crate::shader::compose;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Mode;
 
@@ -50,20 +50,7 @@ impl TilePass {
             ],
             immediate_size: 0,
         });
-        let source =
-            compose("tiles", &CHOICES).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("tiles"),
-            source: wgpu::ShaderSource::Wgsl(source.text.into()),
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("tiles"),
-            layout: Some(&layout),
-            module: &module,
-            entry_point: Some("list_tiles"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let pipeline = build(device, &layout, "tiles", &CHOICES, "list_tiles")?;
         Ok(Self { list_layout, pipeline })
     }
 
@@ -124,6 +111,7 @@ impl TileList {
 mod tests {
     use super::*;
     use crate::pacer::BAND_ROWS;
+    use crate::shader::compose;
 
     #[test]
     fn the_pipeline_builds_on_the_noop_device() {

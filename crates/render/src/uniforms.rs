@@ -4,8 +4,10 @@
 use crate::leap::LeapUniform;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat3, Vec3};
+use std::ops::Range;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::MAX_DIRECTIONS;
+use wheatstone_core::stereo::{Epipolar, SlabRange};
 use wheatstone_core::view::{RayField, View};
 
 /// A WGSL `mat3x3f`: columns padded to 16 bytes.
@@ -65,6 +67,45 @@ pub(crate) struct ViewUniform {
     pub(crate) sample_limit: u32,
     pub(crate) band_stride: u32,
     pub(crate) first_column: u32,
+}
+
+/// Mirror of `lib/strips.wgsl`, where the fields are described.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct StripUniform {
+    pub(crate) k: f32,
+    pub(crate) offset: f32,
+    pub(crate) furthest: i32,
+    pub(crate) nearest: i32,
+    pub(crate) first_column: i32,
+    pub(crate) column_count: u32,
+    pub(crate) width: u32,
+    pub(crate) count: u32,
+    pub(crate) begin: u32,
+    pub(crate) end: u32,
+    pub(crate) is_mirrored: u32,
+    pub(crate) padding: u32,
+}
+
+impl StripUniform {
+    /// Strips of so many columns over some sweep columns.
+    pub(crate) fn new(epipolar: &Epipolar, slabs: SlabRange, columns: &Range<i32>, width: u32) -> Self {
+        let column_count = columns.len() as u32;
+        Self {
+            k: epipolar.k() as f32,
+            offset: (epipolar.c() + 0.5) as f32,
+            furthest: slabs.furthest,
+            nearest: slabs.nearest,
+            first_column: columns.start,
+            column_count,
+            width,
+            count: column_count.div_ceil(width),
+            begin: 0,
+            end: width,
+            is_mirrored: u32::from(epipolar.is_mirrored()),
+            padding: 0,
+        }
+    }
 }
 
 impl CastUniform {
@@ -221,6 +262,16 @@ mod tests {
                 band_stride,
                 first_column,
             ]
+        );
+    }
+
+    #[test]
+    fn strip_uniform_matches_wgsl() {
+        assert_layout!(
+            "lib/strips",
+            "Strips",
+            StripUniform,
+            [k, offset, furthest, nearest, first_column, column_count, width, count, begin, end, is_mirrored,]
         );
     }
 }

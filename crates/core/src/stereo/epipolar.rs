@@ -150,6 +150,21 @@ impl Epipolar {
         (!depths_m.is_empty()).then_some(depths_m)
     }
 
+    /// Sweep columns, of the given ones, whose reference rays can meet a convex body, by its corners in world space.
+    pub fn columns_of(&self, corners_world: &[DVec3], columns: &Range<i32>) -> Range<i32> {
+        let seen: Option<Vec<f64>> = corners_world
+            .iter()
+            .map(|&at| {
+                let x = self.reference.pixel_position(at)?.x;
+                Some(if self.is_mirrored { f64::from(self.width()) - x } else { x })
+            })
+            .collect();
+        let Some(seen) = seen else { return columns.clone() };
+        let lowest = seen.iter().copied().fold(f64::INFINITY, f64::min) - 1.0;
+        let highest = seen.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 1.0;
+        columns.start.max(lowest.floor() as i32)..columns.end.min(highest.ceil() as i32)
+    }
+
     fn width(&self) -> i32 {
         i32::try_from(self.reference.size[0]).unwrap_or(i32::MAX)
     }

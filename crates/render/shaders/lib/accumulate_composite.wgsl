@@ -1,17 +1,9 @@
-import package::lib::classify::{CLASSIFIER_IS_DEAR, VALUE_OFFSET, may_be_visible};
-import package::lib::composite::{blend, finish_ray, is_opaque, start_ray};
+import package::lib::classify::{VALUE_OFFSET, may_be_visible};
+import package::lib::composite::{SEARCHES, STRETCH, blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
 import package::lib::ray_state::{RayState};
-import package::lib::shade::{SHADING_IS_DEAR};
-import package::lib::skip::{RUNS_ARE_DENSE, next_run, start_walk};
+import package::lib::skip::{next_run, start_walk};
 import package::lib::volume::{value_at};
-
-// Samples after which neighbouring rays, one of which may wait at a visible sample, are together again.
-const STRETCH: u32 = 16u;
-
-// Whether to search for the next visible sample before blending it: a driver that runs both sides of every branch
-// (software Vulkan) then blends no other. Not worth it where most are visible and blending is cheap.
-const SEARCHES = CLASSIFIER_IS_DEAR || SHADING_IS_DEAR || !RUNS_ARE_DENSE;
 
 // Front-to-back emission and absorption.
 fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {

@@ -48,7 +48,11 @@ fn visible_interval(origin: vec3f, direction: vec3f) -> vec2f {
 
 // The ray of a pixel; its centre is at (x + 1/2, y + 1/2).
 fn ray_of_pixel(pixel: vec2u) -> Ray {
-    let at = vec2f(pixel) + 0.5;
+    return ray_through(vec2f(pixel) + 0.5);
+}
+
+// The ray through a picture position, in pixels from the top left; it may be beyond the edges.
+fn ray_through(at: vec2f) -> Ray {
     let origin = view.origin + at.x * view.origin_dx + at.y * view.origin_dy;
     let direction = view.direction + at.x * view.direction_dx + at.y * view.direction_dy;
     let interval = visible_interval(origin, direction);

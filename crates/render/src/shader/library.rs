@@ -63,6 +63,7 @@ files! {
     "lib/shading_ray",
     "lib/skip_blocks",
     "lib/skip_none",
+    "lib/strips",
     "lib/sweep",
     "lib/target",
     "lib/tile_list",
@@ -83,5 +84,7 @@ files! {
     "skip/sweep_columns",
     "skip/sweep_rows",
     "skip/zigzag",
+    "stereo/cast_strips",
+    "stereo/merge_strips",
     "tiles",
 }

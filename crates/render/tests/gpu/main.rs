@@ -11,5 +11,6 @@ mod parity;
 mod scene;
 mod segments;
 mod skip;
+mod stereo;
 mod tolerance;
 mod upload;

@@ -1,0 +1,39 @@
+import package::lib::ray_state::{NOTHING_HIT, Pixel};
+import package::lib::strips::{first_reached, mirrored, partial_at, partial_depths_m, partials, reach, strips};
+import package::lib::target::{store};
+import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece, view};
+
+// Composites what the strips have left for each derived pixel, the last strip in front, and empties it for the next frame.
+
+@compute @workgroup_size(BAND_ROWS, BAND_ROWS)
+fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let pixel = first_pixel_of_group(group) + local.xy;
+    if is_outside_piece(pixel) {
+        return;
+    }
+    let column = mirrored(i32(pixel.x), view.width);
+    let width = i32(strips.width);
+    // Strips whose reach holds the column: first_reached(strip) <= column < first_reached(strip) + reach().
+    let from_first = column - first_reached(0u);
+    let last = select(-1, min(from_first / width, i32(strips.count) - 1), from_first >= 0);
+    let first = max((from_first - i32(reach()) + width) / width, 0);
+    var color = vec4f(0.0);
+    var depth_m = NOTHING_HIT;
+    // Reads outside of branches: a branch around the loop crashes Mesa 22's software Vulkan.
+    var strip = last;
+    while strip >= first {
+        let at = partial_at(pixel.y, u32(strip), column);
+        let partial = partials[at];
+        let partial_depth_m = partial_depths_m[at];
+        color += partial * (1.0 - color.a);
+        if depth_m == NOTHING_HIT && partial_depth_m > 0.0 {
+            depth_m = partial_depth_m;
+        }
+        if partial.a > 0.0 {
+            partials[at] = vec4f(0.0);
+            partial_depths_m[at] = 0.0;
+        }
+        strip--;
+    }
+    store(pixel, Pixel(color, depth_m, 0u, 0u));
+}

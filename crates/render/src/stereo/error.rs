@@ -1,0 +1,27 @@
+//! Why a pair of pictures is not made in one cast.
+
+use crate::gpu::GpuError;
+use thiserror::Error;
+use wheatstone_core::stereo::StereoError;
+
+/// Why the picture of one eye cannot be derived from the cast of the other. But for [`PairError::Gpu`], two casts can make
+/// the pair.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PairError {
+    /// The views do not correspond row by row.
+    #[error(transparent)]
+    Views(#[from] StereoError),
+    /// Something other than composited colour.
+    #[error("only composited pictures are derived")]
+    Mode,
+    /// Rays of which a driver does not take one in a dispatch.
+    #[error("rays of up to {samples} samples are too long for one dispatch on this device")]
+    LongRays {
+        /// Most samples of a ray.
+        samples: u32,
+    },
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
