@@ -84,7 +84,6 @@ pub(crate) struct StripUniform {
     pub(crate) begin: u32,
     pub(crate) end: u32,
     pub(crate) is_mirrored: u32,
-    pub(crate) padding: u32,
 }
 
 impl StripUniform {
@@ -103,7 +102,6 @@ impl StripUniform {
             begin: 0,
             end: width,
             is_mirrored: u32::from(epipolar.is_mirrored()),
-            padding: 0,
         }
     }
 }
