@@ -3,8 +3,8 @@
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{Bindings, GroupLayouts};
 use crate::leap::Leap;
+use crate::pipeline::{KernelFiles, build};
 use crate::renderer::Sources;
-use crate::shader::compose;
 use crate::volume::TexelFormat;
 use std::collections::HashMap;
 use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, DIRECTIONAL_STEPS, SHADOW_SAMPLES};
@@ -185,8 +185,7 @@ impl Variant {
         all
     }
 
-    /// The file of each slot.
-    pub(crate) fn choices(&self) -> [(&'static str, &'static str); 10] {
+    fn choices(&self) -> [(&'static str, &'static str); 10] {
         [
             ("lib/accumulate", self.accumulator),
             ("lib/classify", self.classifier),
@@ -258,24 +257,27 @@ pub(crate) fn reads_per_sample(parameters: &CastParameters) -> u32 {
     1 + classifier_reads + shading_samples * (1 + classifier_reads)
 }
 
-/// The pipelines built so far.
+/// Pipelines of a kernel's variants, built when first asked for.
 #[derive(Debug)]
-pub(crate) struct CastPass {
+pub(crate) struct VariantPipelines {
     layout: wgpu::PipelineLayout,
-    pipelines: HashMap<Variant, wgpu::ComputePipeline>,
+    root: &'static str,
+    entry_point: &'static str,
+    built: HashMap<Variant, wgpu::ComputePipeline>,
 }
 
-impl CastPass {
-    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("cast"),
-            bind_group_layouts: &[Some(&groups.frame), Some(&groups.volume), Some(&groups.target)],
-            immediate_size: 0,
-        });
-        Self { layout, pipelines: HashMap::new() }
+impl VariantPipelines {
+    /// None yet, of the kernel that casts views.
+    pub(crate) fn of_views(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
+        Self::new(groups.pipeline_layout(device, "cast", None), "cast", "cast_rays")
     }
 
-    /// The pipeline of a variant, built when first asked for.
+    /// None yet.
+    pub(crate) fn new(layout: wgpu::PipelineLayout, root: &'static str, entry_point: &'static str) -> Self {
+        Self { layout, root, entry_point, built: HashMap::new() }
+    }
+
+    /// The pipeline of a variant.
     ///
     /// # Errors
     /// [`GpuError::Refused`] if the driver does not take the kernel.
@@ -284,41 +286,20 @@ impl CastPass {
         gpu: &Gpu,
         variant: Variant,
     ) -> Result<wgpu::ComputePipeline, GpuError> {
-        if let Some(pipeline) = self.pipelines.get(&variant) {
+        if let Some(pipeline) = self.built.get(&variant) {
             return Ok(pipeline.clone());
         }
-        let pipeline = build(&gpu.device, &self.layout, "cast", &variant.choices(), "cast_rays")?;
+        let pipeline = self.build(&gpu.device, variant)?;
         gpu.check()?;
-        self.pipelines.insert(variant, pipeline.clone());
+        self.built.insert(variant, pipeline.clone());
         Ok(pipeline)
     }
-}
 
-/// Builds a pipeline from a root file and the files of its slots; what the driver says against it comes with the next
-/// [`Gpu::check`].
-///
-/// # Errors
-/// [`GpuError::Refused`] for files that make no module.
-pub(crate) fn build(
-    device: &wgpu::Device,
-    layout: &wgpu::PipelineLayout,
-    root: &str,
-    choices: &[(&str, &str)],
-    entry_point: &str,
-) -> Result<wgpu::ComputePipeline, GpuError> {
-    let source = compose(root, choices).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(root),
-        source: wgpu::ShaderSource::Wgsl(source.text.into()),
-    });
-    Ok(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(root),
-        layout: Some(layout),
-        module: &module,
-        entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    }))
+    fn build(&self, device: &wgpu::Device, variant: Variant) -> Result<wgpu::ComputePipeline, GpuError> {
+        let choices = variant.choices();
+        let files = KernelFiles { root: self.root, choices: &choices, entry_point: self.entry_point };
+        build(device, Some(&self.layout), &files)
+    }
 }
 
 /// Encodes the cast of a piece of whole tiles.
@@ -328,9 +309,7 @@ pub(crate) fn dispatch(
     bindings: &Bindings<'_>,
     workgroups: Workgroups<'_>,
 ) {
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-    pass.set_pipeline(pipeline);
-    bindings.set(&mut pass);
+    let mut pass = bindings.begin_pass(encoder, pipeline, None);
     match workgroups {
         Workgroups::Counted([x, y]) => pass.dispatch_workgroups(x, y, 1),
         Workgroups::Listed(groups) => pass.dispatch_workgroups_indirect(groups, 0),
@@ -349,6 +328,7 @@ pub(crate) enum Workgroups<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shader::compose;
 
     #[test]
     fn every_kernel_is_valid_wgsl() {
@@ -382,10 +362,10 @@ mod tests {
     #[test]
     fn every_pipeline_builds_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let pass = CastPass::new(&device, &GroupLayouts::new(&device));
+        let pipelines = VariantPipelines::of_views(&device, &GroupLayouts::new(&device));
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         for variant in Variant::all() {
-            build(&device, &pass.layout, "cast", &variant.choices(), "cast_rays").unwrap();
+            pipelines.build(&device, variant).unwrap();
         }
         if let Some(error) = pollster::block_on(scope.pop()) {
             panic!("{error}");

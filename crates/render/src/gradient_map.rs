@@ -1,8 +1,9 @@
 //! Gradient magnitudes of a volume, made on the device: the GPU twin of `wheatstone_core::gradient_map`.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::kernel::{Kernel, KernelFiles};
+use crate::kernel::Kernel;
 use crate::layers::{PaddedRows, copy_layers};
+use crate::pipeline::KernelFiles;
 use crate::readback::{read_buffer, read_texture};
 use crate::skip::VoxelTexture;
 use crate::volume::{GpuVolume, TexelFormat, byte_size, check_size, extent};

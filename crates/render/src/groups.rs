@@ -45,6 +45,22 @@ impl GroupLayouts {
             target: layout(device, "target", &target),
         }
     }
+
+    /// The layout of a pipeline that has, or has not, a group of its own after these.
+    pub(crate) fn pipeline_layout(
+        &self,
+        device: &wgpu::Device,
+        label: &str,
+        own: Option<&wgpu::BindGroupLayout>,
+    ) -> wgpu::PipelineLayout {
+        let groups: Vec<_> =
+            [&self.frame, &self.volume, &self.target].into_iter().chain(own).map(Some).collect();
+        device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        })
+    }
 }
 
 /// Groups 0 to 2 of one dispatch.
@@ -55,10 +71,19 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl Bindings<'_> {
-    pub(crate) fn set(&self, pass: &mut wgpu::ComputePass<'_>) {
-        for (index, group) in (0..).zip([self.frame, self.volume, self.target]) {
+    /// Begins a pass of a pipeline that has, or has not, a group of its own after these.
+    pub(crate) fn begin_pass<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        pipeline: &wgpu::ComputePipeline,
+        own: Option<&wgpu::BindGroup>,
+    ) -> wgpu::ComputePass<'e> {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(pipeline);
+        for (index, group) in (0..).zip([self.frame, self.volume, self.target].into_iter().chain(own)) {
             pass.set_bind_group(index, group, &[]);
         }
+        pass
     }
 }
 

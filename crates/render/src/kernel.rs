@@ -1,18 +1,11 @@
 //! Compute kernels with one bind group, laid out as their shader declares it.
 
 use crate::gpu::GpuError;
-use crate::shader::compose;
+use crate::groups::bind;
+use crate::pipeline::{KernelFiles, build};
 
 /// Invocations along x and y of every workgroup; along z there is one.
 const WORKGROUP_SIDE: u32 = 8;
-
-/// The files and the entry point of a kernel.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct KernelFiles<'a> {
-    pub(crate) root: &'static str,
-    pub(crate) choices: &'a [(&'static str, &'static str)],
-    pub(crate) entry_point: &'static str,
-}
 
 /// A pipeline. Cheap to clone.
 #[derive(Debug, Clone)]
@@ -26,21 +19,7 @@ impl Kernel {
     /// # Errors
     /// [`GpuError::Refused`] for files that make no module.
     pub(crate) fn new(device: &wgpu::Device, files: &KernelFiles<'_>) -> Result<Self, GpuError> {
-        let source = compose(files.root, files.choices)
-            .map_err(|error| GpuError::Refused { reason: error.to_string() })?;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(files.root),
-            source: wgpu::ShaderSource::Wgsl(source.text.into()),
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(files.root),
-            layout: None,
-            module: &module,
-            entry_point: Some(files.entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
-        Ok(Self { pipeline })
+        Ok(Self { pipeline: build(device, None, files)? })
     }
 
     /// A bind group of resources at the bindings 0, 1, 2, …
@@ -49,15 +28,7 @@ impl Kernel {
         device: &wgpu::Device,
         resources: &[wgpu::BindingResource<'_>],
     ) -> wgpu::BindGroup {
-        let entries: Vec<_> = (0..)
-            .zip(resources)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-            .collect();
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        })
+        bind(device, &self.pipeline.get_bind_group_layout(0), resources)
     }
 
     /// Adds a pass of at least the given invocations along each axis.
@@ -77,7 +48,7 @@ impl Kernel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::FILES;
+    use crate::shader::{FILES, compose};
 
     /// Roots of the passes of a cast, which share bind groups.
     const CAST_ROOTS: [&str; 4] = ["cast", "tiles", "stereo/cast_strips", "stereo/merge_strips"];

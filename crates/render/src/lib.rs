@@ -11,6 +11,7 @@ mod kernel;
 mod layers;
 mod leap;
 mod pacer;
+mod pipeline;
 mod readback;
 mod renderer;
 pub mod shader;

@@ -1,6 +1,6 @@
 //! The renderer: what is kept between frames, and the one loop over views.
 
-use crate::cast_pass::{self, CastPass, Tiles, Variant, Workgroups};
+use crate::cast_pass::{self, Tiles, Variant, VariantPipelines, Workgroups};
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
@@ -35,12 +35,14 @@ const MOST_STATE_BYTES: u64 = 64 << 20;
 #[derive(Debug)]
 pub struct Renderer {
     groups: GroupLayouts,
-    cast_pass: CastPass,
+    casts: VariantPipelines,
     tile_pass: TilePass,
     strip_pass: StripPass,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
+    /// Stand where a cast keeps no rays and lists no tiles.
+    unused: [wgpu::Buffer; 2],
     pacer: Pacer,
 }
 
@@ -83,7 +85,7 @@ impl Renderer {
     /// A device that refuses or is lost.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let groups = GroupLayouts::new(&gpu.device);
-        let cast_pass = CastPass::new(&gpu.device, &groups);
+        let casts = VariantPipelines::of_views(&gpu.device, &groups);
         let tile_pass = TilePass::new(&gpu.device, &groups)?;
         let strip_pass = StripPass::new(&gpu.device, &groups)?;
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -105,8 +107,9 @@ impl Renderer {
                 view_formats: &[],
             })
             .create_view(&wgpu::TextureViewDescriptor::default());
+        let unused = [(); 2].map(|()| storage(gpu, "unused", RAY_STATE_BYTES));
         gpu.check()?;
-        Ok(Self { groups, cast_pass, tile_pass, strip_pass, sampler, no_map, pacer: Pacer::new() })
+        Ok(Self { groups, casts, tile_pass, strip_pass, sampler, unused, no_map, pacer: Pacer::new() })
     }
 
     /// Prepares a volume to be cast with some parameters.
@@ -122,7 +125,7 @@ impl Renderer {
         let lists_tiles = tile_pass::pays(gpu, &parameters, &sources.leap);
         let tiles = if lists_tiles { Tiles::Listed } else { Tiles::All };
         let variant = Variant::of(&parameters, sources, tiles);
-        self.cast_pass.pipeline(gpu, variant)?;
+        self.casts.pipeline(gpu, variant)?;
         let Sources { volume, gradient_map, leap } = sources;
         let iterations_per_sample = cast_pass::iterations_per_sample(&parameters, leap);
         let stored = volume.encoding().normalised_from_stored(parameters.window);
@@ -259,7 +262,8 @@ impl Renderer {
         }
         let pipeline = self.strip_pass.pipeline(gpu, prepared.variant)?;
         let buffers = self.strip_pass.buffers(gpu, epipolar, slabs, &columns)?;
-        let [of_reference, of_derived] = [reference, derived].map(|target| self.target_group(gpu, target));
+        let [of_reference, of_derived] =
+            [reference, derived].map(|target| self.target_group(gpu, target, self.unused.each_ref()));
 
         let is_software = gpu.description().is_software;
         let covered = Squares::covered(epipolar.reference(), &corners);
@@ -294,25 +298,22 @@ impl Renderer {
         Ok(buffers.byte_size())
     }
 
-    /// The bindings of a target where rays are neither kept nor listed.
-    fn target_group(&self, gpu: &Gpu, target: &Target) -> wgpu::BindGroup {
+    /// The bindings of a target, of the rays that are kept and of the tiles that are listed.
+    fn target_group(
+        &self,
+        gpu: &Gpu,
+        target: &Target,
+        [states, tiles]: [&wgpu::Buffer; 2],
+    ) -> wgpu::BindGroup {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let (color, depth) = (view(&target.color), view(&target.depth));
-        let unused = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("unused"),
-            size: RAY_STATE_BYTES,
-            usage: wgpu::BufferUsages::STORAGE,
-            mapped_at_creation: false,
-        });
-        let list = self.tile_pass.list(&gpu.device, [1, 1]);
         bind(
             &gpu.device,
             &self.groups.target,
             &[
-                wgpu::BindingResource::TextureView(&color),
-                wgpu::BindingResource::TextureView(&depth),
-                unused.as_entire_binding(),
-                list.tiles.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&view(&target.color)),
+                wgpu::BindingResource::TextureView(&view(&target.depth)),
+                states.as_entire_binding(),
+                tiles.as_entire_binding(),
             ],
         )
     }
@@ -327,25 +328,11 @@ impl Renderer {
         let most_samples = parameters.most_samples_per_ray();
         let iterations = prepared.iterations_per_sample;
         let may_be_split = sample_limit(most_samples, iterations, 1.0) != u32::MAX;
-        let states = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("ray states"),
-            size: state_row_bytes * u64::from(if may_be_split { state_rows } else { BAND_ROWS }),
-            usage: wgpu::BufferUsages::STORAGE,
-            mapped_at_creation: false,
-        });
-        let color = target.color.create_view(&wgpu::TextureViewDescriptor::default());
-        let depth = target.depth.create_view(&wgpu::TextureViewDescriptor::default());
-        let list = self.tile_pass.list(&gpu.device, if prepared.lists_tiles { view.size } else { [1, 1] });
-        let target_group = bind(
-            &gpu.device,
-            &self.groups.target,
-            &[
-                wgpu::BindingResource::TextureView(&color),
-                wgpu::BindingResource::TextureView(&depth),
-                states.as_entire_binding(),
-                list.tiles.as_entire_binding(),
-            ],
-        );
+        let kept_rows = if may_be_split { state_rows } else { BAND_ROWS };
+        let states = storage(gpu, "ray states", state_row_bytes * u64::from(kept_rows));
+        let list = prepared.lists_tiles.then(|| self.tile_pass.list(&gpu.device, view.size));
+        let tiles = list.as_ref().map_or(&self.unused[1], |list| &list.tiles);
+        let target_group = self.target_group(gpu, target, [&states, tiles]);
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target_group };
 
         let reads = cast_pass::reads_per_sample(parameters);
@@ -371,21 +358,20 @@ impl Renderer {
             piece.first_sample = 0;
             let is_whole = piece.sample_limit == u32::MAX;
             let variant = if is_whole { prepared.variant } else { prepared.variant.in_parts() };
-            let pipeline = self.cast_pass.pipeline(gpu, variant)?;
+            let pipeline = self.casts.pipeline(gpu, variant)?;
             let squares = [covered.columns.len() as u32, band_count];
             while piece.first_sample < most_samples {
                 gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
                 let mut encoder =
                     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                if prepared.lists_tiles {
-                    if piece.first_sample == 0 {
-                        list.clear(&gpu.queue);
-                        self.tile_pass.dispatch(&mut encoder, &list, &bindings, squares);
-                    }
-                    cast_pass::dispatch(&mut encoder, &pipeline, &bindings, Workgroups::Listed(&list.groups));
-                } else {
-                    cast_pass::dispatch(&mut encoder, &pipeline, &bindings, Workgroups::Counted(squares));
+                let workgroups = list
+                    .as_ref()
+                    .map_or(Workgroups::Counted(squares), |list| Workgroups::Listed(&list.groups));
+                if let Some(list) = list.as_ref().filter(|_| piece.first_sample == 0) {
+                    list.clear(&gpu.queue);
+                    self.tile_pass.dispatch(&mut encoder, list, &bindings, squares);
                 }
+                cast_pass::dispatch(&mut encoder, &pipeline, &bindings, workgroups);
                 let start = Instant::now();
                 gpu.queue.submit([encoder.finish()]);
                 gpu.wait()?;
@@ -465,6 +451,16 @@ fn packed(entries: &[LutEntry]) -> Vec<[u32; 4]> {
 /// whether one of them or all need a sample; longer runs spare it searches (`docs/benchmarks/`).
 fn shortest_run(gpu: &Gpu) -> f32 {
     if gpu.description().is_software { 12.0 } else { 1.0 }
+}
+
+/// A buffer that only shaders read and write; zero at first.
+fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::STORAGE,
+        mapped_at_creation: false,
+    })
 }
 
 fn init_buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -3,10 +3,10 @@
 //! Software Vulkan runs the whole of a kernel for every eight rays in lockstep, also where all of them miss. A kernel that
 //! only finds that out is far cheaper; the cast is then sent to the others alone.
 
-use crate::cast_pass::build;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{Bindings, GroupLayouts, bind, layout, storage_buffer};
 use crate::leap::Leap;
+use crate::pipeline::{KernelFiles, build};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Mode;
 
@@ -40,17 +40,9 @@ impl TilePass {
     /// [`GpuError::Refused`] for files that make no module.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
         let list_layout = layout(device, "tile list", &[storage_buffer(12), storage_buffer(4)]);
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("tiles"),
-            bind_group_layouts: &[
-                Some(&groups.frame),
-                Some(&groups.volume),
-                Some(&groups.target),
-                Some(&list_layout),
-            ],
-            immediate_size: 0,
-        });
-        let pipeline = build(device, &layout, "tiles", &CHOICES, "list_tiles")?;
+        let layout = groups.pipeline_layout(device, "tiles", Some(&list_layout));
+        let files = KernelFiles { root: "tiles", choices: &CHOICES, entry_point: "list_tiles" };
+        let pipeline = build(device, Some(&layout), &files)?;
         Ok(Self { list_layout, pipeline })
     }
 
@@ -82,10 +74,7 @@ impl TilePass {
         bindings: &Bindings<'_>,
         [squares_x, squares_y]: [u32; 2],
     ) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&self.pipeline);
-        bindings.set(&mut pass);
-        pass.set_bind_group(3, &list.group, &[]);
+        let mut pass = bindings.begin_pass(encoder, &self.pipeline, Some(&list.group));
         pass.dispatch_workgroups(squares_x, squares_y, 1);
     }
 }

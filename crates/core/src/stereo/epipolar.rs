@@ -1,7 +1,7 @@
 //! What two parallel views have in common.
 
 use super::{Slabs, StereoError};
-use crate::view::{Frustum, Projection, View};
+use crate::view::{Frustum, Projection, View, whole_pixels};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -160,9 +160,8 @@ impl Epipolar {
             })
             .collect();
         let Some(seen) = seen else { return columns.clone() };
-        let lowest = seen.iter().copied().fold(f64::INFINITY, f64::min) - 1.0;
-        let highest = seen.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 1.0;
-        columns.start.max(lowest.floor() as i32)..columns.end.min(highest.ceil() as i32)
+        let Range { start, end } = whole_pixels(seen.into_iter());
+        columns.start.max(start as i32)..columns.end.min(end as i32)
     }
 
     fn width(&self) -> i32 {

@@ -10,6 +10,7 @@ mod rig;
 pub use frustum::{Frustum, FrustumError, OrthographicBox, Projection};
 pub use orbit::Orbit;
 pub use pixel_rect::PixelRect;
+pub(crate) use pixel_rect::whole_pixels;
 pub use placement::{AnatomicalDirection, world_from_patient};
 pub use ray_field::RayField;
 pub use rig::Rig;

@@ -26,13 +26,19 @@ impl PixelRect {
             return Self { columns: 0..width, rows: 0..height };
         };
         let range = |along: fn(&DVec2) -> f64, size: u32| {
-            let lowest = pixels.iter().map(along).fold(f64::INFINITY, f64::min) - MARGIN;
-            let highest = pixels.iter().map(along).fold(f64::NEG_INFINITY, f64::max) + MARGIN;
+            let Range { start, end } = whole_pixels(pixels.iter().map(along));
             let within = |at: f64| at.clamp(0.0, f64::from(size)) as u32;
-            within(lowest.floor())..within(highest.ceil())
+            within(start)..within(end)
         };
         Self { columns: range(|at| at.x, width), rows: range(|at| at.y, height) }
     }
+}
+
+/// The whole pixels that positions along an axis span, with the margin; some may be beyond the picture's edges.
+pub(crate) fn whole_pixels(positions: impl Iterator<Item = f64>) -> Range<f64> {
+    let (lowest, highest) =
+        positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    (lowest - MARGIN).floor()..(highest + MARGIN).ceil()
 }
 
 impl View {

@@ -24,7 +24,7 @@ struct Strips {
 }
 
 @group(3) @binding(0) var<uniform> strips: Strips;
-// What each strip adds to the derived columns that its rays reach: premultiplied RGBA; zero outside a frame.
+// What each strip adds to the derived columns that its rays reach: premultiplied RGBA; zero at first.
 @group(3) @binding(1) var<storage, read_write> partials: array<vec4f>;
 // Depth of the first hit of each, metres; 0 without one.
 @group(3) @binding(2) var<storage, read_write> partial_depths_m: array<f32>;

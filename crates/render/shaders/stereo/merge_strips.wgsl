@@ -3,7 +3,7 @@ import package::lib::strips::{first_reached, mirrored, partial_at, partial_depth
 import package::lib::target::{store};
 import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece, view};
 
-// Composites what the strips have left for each derived pixel, the last strip in front, and empties it for the next frame.
+// Composites what the strips have left for each derived pixel, the last strip in front.
 
 @compute @workgroup_size(BAND_ROWS, BAND_ROWS)
 fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
@@ -28,10 +28,6 @@ fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         color += partial * (1.0 - color.a);
         if depth_m == NOTHING_HIT && partial_depth_m > 0.0 {
             depth_m = partial_depth_m;
-        }
-        if partial.a > 0.0 {
-            partials[at] = vec4f(0.0);
-            partial_depths_m[at] = 0.0;
         }
         strip--;
     }

@@ -1,7 +1,8 @@
 //! The kernels of empty-space skipping.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::kernel::{Kernel, KernelFiles};
+use crate::kernel::Kernel;
+use crate::pipeline::KernelFiles;
 
 pub(super) const RANGES_OF_WHOLE: KernelFiles<'_> = KernelFiles {
     root: "skip/block_ranges",

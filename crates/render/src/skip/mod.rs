@@ -26,7 +26,7 @@ pub use wheatstone_core::skip::Structure;
 
 /// Every kernel of this module.
 #[cfg(test)]
-pub(crate) fn kernel_files() -> Vec<crate::kernel::KernelFiles<'static>> {
+pub(crate) fn kernel_files() -> Vec<crate::pipeline::KernelFiles<'static>> {
     vec![
         kernels::RANGES_OF_WHOLE,
         kernels::RANGES_OF_FLOATS,

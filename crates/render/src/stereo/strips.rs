@@ -3,11 +3,11 @@
 //! Single-pass stereo (SP) without its layers: a strip composites segments into the derived columns that it reaches, in the
 //! order in which they are made; where strips overlap, their sums are merged, for `over` is associative.
 
-use crate::cast_pass::{Variant, build};
+use crate::cast_pass::{Variant, VariantPipelines};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{Bindings, GroupLayouts, bind, layout, storage_buffer, uniform};
+use crate::pipeline::{KernelFiles, build};
 use crate::uniforms::StripUniform;
-use std::collections::HashMap;
 use std::ops::Range;
 use wheatstone_core::stereo::{Epipolar, SlabRange};
 
@@ -17,12 +17,11 @@ const STRIP_COLUMNS: u32 = 64;
 /// Bytes of what a strip leaves for a derived pixel: RGBA, and the depth of the first hit.
 const PARTIAL_BYTES: [u64; 2] = [16, 4];
 
-/// Pipelines built so far.
+/// Pipelines.
 #[derive(Debug)]
 pub(crate) struct StripPass {
     strip_layout: wgpu::BindGroupLayout,
-    layout: wgpu::PipelineLayout,
-    cast: HashMap<Variant, wgpu::ComputePipeline>,
+    cast: VariantPipelines,
     merge: wgpu::ComputePipeline,
 }
 
@@ -34,18 +33,11 @@ impl StripPass {
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
         let types = [uniform::<StripUniform>(), storage_buffer(16), storage_buffer(4)];
         let strip_layout = layout(device, "strips", &types);
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("strips"),
-            bind_group_layouts: &[
-                Some(&groups.frame),
-                Some(&groups.volume),
-                Some(&groups.target),
-                Some(&strip_layout),
-            ],
-            immediate_size: 0,
-        });
-        let merge = build(device, &layout, "stereo/merge_strips", &[], "merge_strips")?;
-        Ok(Self { strip_layout, layout, cast: HashMap::new(), merge })
+        let layout = groups.pipeline_layout(device, "strips", Some(&strip_layout));
+        let files = KernelFiles { root: "stereo/merge_strips", choices: &[], entry_point: "merge_strips" };
+        let merge = build(device, Some(&layout), &files)?;
+        let cast = VariantPipelines::new(layout, "stereo/cast_strips", "cast_strips");
+        Ok(Self { strip_layout, cast, merge })
     }
 
     /// The casting pipeline of a variant, built when first asked for.
@@ -57,14 +49,7 @@ impl StripPass {
         gpu: &Gpu,
         variant: Variant,
     ) -> Result<wgpu::ComputePipeline, GpuError> {
-        if let Some(pipeline) = self.cast.get(&variant) {
-            return Ok(pipeline.clone());
-        }
-        let choices = variant.choices();
-        let pipeline = build(&gpu.device, &self.layout, "stereo/cast_strips", &choices, "cast_strips")?;
-        gpu.check()?;
-        self.cast.insert(variant, pipeline.clone());
-        Ok(pipeline)
+        self.cast.pipeline(gpu, variant)
     }
 
     /// Room for the partial sums of a pair of pictures whose volume is in some slabs and sweep columns of rays; empty.
@@ -120,10 +105,7 @@ impl StripPass {
         buffers: &StripBuffers,
         bands: u32,
     ) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(pipeline);
-        bindings.set(&mut pass);
-        pass.set_bind_group(3, &buffers.group, &[]);
+        let mut pass = bindings.begin_pass(encoder, pipeline, Some(&buffers.group));
         pass.dispatch_workgroups(buffers.strips.count, bands, 1);
     }
 
@@ -135,10 +117,7 @@ impl StripPass {
         buffers: &StripBuffers,
         [squares_x, squares_y]: [u32; 2],
     ) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&self.merge);
-        bindings.set(&mut pass);
-        pass.set_bind_group(3, &buffers.group, &[]);
+        let mut pass = bindings.begin_pass(encoder, &self.merge, Some(&buffers.group));
         pass.dispatch_workgroups(squares_x, squares_y, 1);
     }
 }
