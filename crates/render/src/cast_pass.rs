@@ -263,18 +263,25 @@ pub(crate) struct VariantPipelines {
     layout: wgpu::PipelineLayout,
     root: &'static str,
     entry_point: &'static str,
+    /// The files of slots that no variant chooses.
+    fixed: &'static [(&'static str, &'static str)],
     built: HashMap<Variant, wgpu::ComputePipeline>,
 }
 
 impl VariantPipelines {
     /// None yet, of the kernel that casts views.
     pub(crate) fn of_views(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
-        Self::new(groups.pipeline_layout(device, "cast", None), "cast", "cast_rays")
+        Self::new(groups.pipeline_layout(device, "cast", None), "cast", "cast_rays", &[])
     }
 
     /// None yet.
-    pub(crate) fn new(layout: wgpu::PipelineLayout, root: &'static str, entry_point: &'static str) -> Self {
-        Self { layout, root, entry_point, built: HashMap::new() }
+    pub(crate) fn new(
+        layout: wgpu::PipelineLayout,
+        root: &'static str,
+        entry_point: &'static str,
+        fixed: &'static [(&'static str, &'static str)],
+    ) -> Self {
+        Self { layout, root, entry_point, fixed, built: HashMap::new() }
     }
 
     /// The pipeline of a variant.
@@ -296,7 +303,7 @@ impl VariantPipelines {
     }
 
     fn build(&self, device: &wgpu::Device, variant: Variant) -> Result<wgpu::ComputePipeline, GpuError> {
-        let choices = variant.choices();
+        let choices = [&variant.choices(), self.fixed].concat();
         let files = KernelFiles { root: self.root, choices: &choices, entry_point: self.entry_point };
         build(device, Some(&self.layout), &files)
     }

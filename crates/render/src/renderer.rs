@@ -5,10 +5,8 @@ use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
-use crate::pacer::{
-    BAND_ROWS, ITERATION_LIMIT, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride,
-};
-use crate::stereo::{PairError, StripPass};
+use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
+use crate::stereo::StripPass;
 use crate::target::Target;
 use crate::tile_pass::{self, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
@@ -20,13 +18,8 @@ use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
-use wheatstone_core::scene::Mode;
-use wheatstone_core::stereo::Epipolar;
 use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
 use wheatstone_core::view::{PixelRect, View};
-
-/// Rays that software Vulkan casts in lockstep; each may wait for the others.
-const LOCKSTEP_RAYS: u32 = 8;
 
 /// Most bytes of ray states between dispatches.
 const MOST_STATE_BYTES: u64 = 64 << 20;
@@ -37,12 +30,12 @@ pub struct Renderer {
     groups: GroupLayouts,
     casts: VariantPipelines,
     tile_pass: TilePass,
-    strip_pass: StripPass,
+    strip_pass: Option<StripPass>,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
     /// Stand where a cast keeps no rays and lists no tiles.
-    unused: [wgpu::Buffer; 2],
+    pub(crate) unused: [wgpu::Buffer; 2],
     pacer: Pacer,
 }
 
@@ -69,13 +62,13 @@ impl<'a> Sources<'a> {
 /// either.
 #[derive(Debug)]
 pub struct Prepared {
-    parameters: CastParameters,
-    variant: Variant,
+    pub(crate) parameters: CastParameters,
+    pub(crate) variant: Variant,
     lists_tiles: bool,
-    iterations_per_sample: u32,
-    view_uniform: wgpu::Buffer,
-    frame: wgpu::BindGroup,
-    volume: wgpu::BindGroup,
+    pub(crate) iterations_per_sample: u32,
+    pub(crate) view_uniform: wgpu::Buffer,
+    pub(crate) frame: wgpu::BindGroup,
+    pub(crate) volume: wgpu::BindGroup,
 }
 
 impl Renderer {
@@ -87,7 +80,6 @@ impl Renderer {
         let groups = GroupLayouts::new(&gpu.device);
         let casts = VariantPipelines::of_views(&gpu.device, &groups);
         let tile_pass = TilePass::new(&gpu.device, &groups)?;
-        let strip_pass = StripPass::new(&gpu.device, &groups)?;
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("trilinear"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -109,7 +101,7 @@ impl Renderer {
             .create_view(&wgpu::TextureViewDescriptor::default());
         let unused = [(); 2].map(|()| storage(gpu, "unused", RAY_STATE_BYTES));
         gpu.check()?;
-        Ok(Self { groups, casts, tile_pass, strip_pass, sampler, unused, no_map, pacer: Pacer::new() })
+        Ok(Self { groups, casts, tile_pass, strip_pass: None, sampler, unused, no_map, pacer: Pacer::new() })
     }
 
     /// Prepares a volume to be cast with some parameters.
@@ -218,88 +210,17 @@ impl Renderer {
         targets.iter().map(|target| target.read(gpu)).collect()
     }
 
-    /// Casts the reference view of a pair and derives the other from its rays (SP, by strips), into a target for each, and
-    /// waits until both are done. Returns the bytes of the partial sums.
-    ///
-    /// # Errors
-    /// What keeps the one view from being derived from the other; no memory, a lost or hung device.
-    ///
-    /// # Panics
-    /// If a target has another size than the views.
-    pub fn render_pair(
-        &mut self,
-        gpu: &Gpu,
-        prepared: &Prepared,
-        epipolar: &Epipolar,
-        [reference, derived]: [&Target; 2],
-    ) -> Result<u64, PairError> {
-        let parameters = &prepared.parameters;
-        let size = epipolar.reference().size;
-        assert!(reference.size() == size && derived.size() == size, "targets have the size of their views");
-        if parameters.mode != Mode::Composite {
-            return Err(PairError::Mode);
-        }
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        reference.clear(&mut encoder);
-        derived.clear(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
-        let corners = parameters.visible_corners_world();
-        let Some(depths_m) = epipolar.depths_m(&corners) else {
-            return Ok(0);
+    /// Strips, made when first asked for.
+    pub(crate) fn strips(&mut self, gpu: &Gpu) -> Result<&mut StripPass, GpuError> {
+        let made = match self.strip_pass.take() {
+            Some(made) => made,
+            None => StripPass::new(&gpu.device, &self.groups)?,
         };
-        let slabs = epipolar.slabs().between(depths_m.start, depths_m.end);
-        let columns = epipolar.columns_of(&corners, &slabs.cast_columns(size[0]));
-        if columns.is_empty() {
-            return Ok(0);
-        }
-        let samples = parameters.most_samples_per_ray();
-        let iterations_per_ray = samples
-            .saturating_mul(prepared.iterations_per_sample)
-            .saturating_add(LOCKSTEP_RAYS * slabs.layers());
-        let most_columns = ITERATION_LIMIT / iterations_per_ray;
-        if most_columns == 0 {
-            return Err(PairError::LongRays { samples });
-        }
-        let pipeline = self.strip_pass.pipeline(gpu, prepared.variant)?;
-        let buffers = self.strip_pass.buffers(gpu, epipolar, slabs, &columns)?;
-        let [of_reference, of_derived] =
-            [reference, derived].map(|target| self.target_group(gpu, target, self.unused.each_ref()));
-
-        let is_software = gpu.description().is_software;
-        let covered = Squares::covered(epipolar.reference(), &corners);
-        let mut piece = ViewUniform::new(parameters, epipolar.reference());
-        piece.first_row = covered.bands.start * BAND_ROWS;
-        piece.row_count = covered.rows(size[1]);
-        piece.band_stride = if is_software { spreading_stride(covered.bands.len() as u32) } else { 1 };
-        gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
-        let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &of_reference };
-        for range in buffers.columns(most_columns) {
-            buffers.take(&gpu.queue, &range);
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            self.strip_pass.cast(&mut encoder, &pipeline, &bindings, &buffers, covered.bands.len() as u32);
-            gpu.queue.submit([encoder.finish()]);
-        }
-        gpu.wait()?;
-
-        let covered = Squares::covered(epipolar.derived(), &corners);
-        let piece = ViewUniform {
-            first_row: covered.bands.start * BAND_ROWS,
-            row_count: covered.rows(size[1]),
-            first_column: covered.columns.start * BAND_ROWS,
-            band_stride: 1,
-            ..piece
-        };
-        gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
-        let bindings = Bindings { target: &of_derived, ..bindings };
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.strip_pass.merge(&mut encoder, &bindings, &buffers, covered.counts());
-        gpu.queue.submit([encoder.finish()]);
-        gpu.wait()?;
-        Ok(buffers.byte_size())
+        Ok(self.strip_pass.insert(made))
     }
 
     /// The bindings of a target, of the rays that are kept and of the tiles that are listed.
-    fn target_group(
+    pub(crate) fn target_group(
         &self,
         gpu: &Gpu,
         target: &Target,
@@ -386,26 +307,26 @@ impl Renderer {
 }
 
 /// Squares of `BAND_ROWS` pixels that a body can cover.
-struct Squares {
+pub(crate) struct Squares {
     /// From the left.
-    columns: Range<u32>,
+    pub(crate) columns: Range<u32>,
     /// From the top.
-    bands: Range<u32>,
+    pub(crate) bands: Range<u32>,
 }
 
 impl Squares {
-    fn covered(view: &View, corners_world: &[DVec3]) -> Self {
+    pub(crate) fn covered(view: &View, corners_world: &[DVec3]) -> Self {
         let covered = PixelRect::around(view, corners_world.iter().copied());
         let squares = |pixels: Range<u32>| pixels.start / BAND_ROWS..pixels.end.div_ceil(BAND_ROWS);
         Self { columns: squares(covered.columns), bands: squares(covered.rows) }
     }
 
-    fn counts(&self) -> [u32; 2] {
+    pub(crate) fn counts(&self) -> [u32; 2] {
         [self.columns.len() as u32, self.bands.len() as u32]
     }
 
     /// Rows of pixels of a picture of the given height.
-    fn rows(&self, height: u32) -> u32 {
+    pub(crate) fn rows(&self, height: u32) -> u32 {
         height.min(self.bands.end * BAND_ROWS).saturating_sub(self.bands.start * BAND_ROWS)
     }
 }

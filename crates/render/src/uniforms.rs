@@ -69,10 +69,10 @@ pub(crate) struct ViewUniform {
     pub(crate) first_column: u32,
 }
 
-/// Mirror of `lib/strips.wgsl`, where the fields are described.
+/// Mirror of `lib/pair.wgsl`, where the fields are described.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(crate) struct StripUniform {
+pub(crate) struct PairUniform {
     pub(crate) k: f32,
     pub(crate) offset: f32,
     pub(crate) furthest: i32,
@@ -86,7 +86,7 @@ pub(crate) struct StripUniform {
     pub(crate) is_mirrored: u32,
 }
 
-impl StripUniform {
+impl PairUniform {
     /// Strips of so many columns over some sweep columns.
     pub(crate) fn new(epipolar: &Epipolar, slabs: SlabRange, columns: &Range<i32>, width: u32) -> Self {
         let column_count = columns.len() as u32;
@@ -264,11 +264,11 @@ mod tests {
     }
 
     #[test]
-    fn strip_uniform_matches_wgsl() {
+    fn pair_uniform_matches_wgsl() {
         assert_layout!(
-            "lib/strips",
-            "Strips",
-            StripUniform,
+            "lib/pair",
+            "Pair",
+            PairUniform,
             [k, offset, furthest, nearest, first_column, column_count, width, count, begin, end, is_mirrored,]
         );
     }

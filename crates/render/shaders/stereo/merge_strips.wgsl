@@ -1,5 +1,6 @@
 import package::lib::ray_state::{NOTHING_HIT, Pixel};
-import package::lib::strips::{first_reached, mirrored, partial_at, partial_depths_m, partials, reach, strips};
+import package::lib::pair::{mirrored, pair};
+import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
 import package::lib::target::{store};
 import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece, view};
 
@@ -12,10 +13,10 @@ fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         return;
     }
     let column = mirrored(i32(pixel.x), view.width);
-    let width = i32(strips.width);
+    let width = i32(pair.width);
     // Strips whose reach holds the column: first_reached(strip) <= column < first_reached(strip) + reach().
     let from_first = column - first_reached(0u);
-    let last = select(-1, min(from_first / width, i32(strips.count) - 1), from_first >= 0);
+    let last = select(-1, min(from_first / width, i32(pair.count) - 1), from_first >= 0);
     let first = max((from_first - i32(reach()) + width) / width, 0);
     var color = vec4f(0.0);
     var depth_m = NOTHING_HIT;

@@ -23,6 +23,7 @@ files! {
     "lib/blocks_by_maximum",
     "lib/blocks_by_minimum",
     "lib/cast_parameters",
+    "lib/cast_segments",
     "lib/classified",
     "lib/classify_isovalue",
     "lib/classify_preintegrated",
@@ -48,6 +49,7 @@ files! {
     "lib/pack_r16float_of_8bit",
     "lib/pack_r16unorm",
     "lib/pack_r8unorm",
+    "lib/pair",
     "lib/quads",
     "lib/range_uniform",
     "lib/ray",
@@ -86,5 +88,6 @@ files! {
     "skip/zigzag",
     "stereo/cast_strips",
     "stereo/merge_strips",
+    "stereo/sink_strips",
     "tiles",
 }

@@ -12,7 +12,9 @@ use wheatstone_core::stereo::{Epipolar, StereoError};
 use wheatstone_core::view::{Rig, View};
 use wheatstone_core::volume::{Volume, VoxelType};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
-use wheatstone_render::{Gpu, GpuVolume, Leap, PairError, Prepared, Renderer, Sources, Target, TexelFormat};
+use wheatstone_render::{
+    Gpu, GpuVolume, Leap, PairError, PairMethod, Prepared, Renderer, Sources, Target, TexelFormat,
+};
 
 /// Largest difference of a channel of the reference eye from a mono cast: one level of an 8-bit picture.
 const LARGEST_DIFFERENCE: f64 = 1.0 / 255.0;
@@ -37,7 +39,9 @@ fn pair(middle: &View, eye_distance_m: f64, convergence_m: f64) -> [View; 2] {
 fn cast_pair(gpu: &Gpu, renderer: &mut Renderer, prepared: &Prepared, views: [View; 2]) -> [Cast; 2] {
     let epipolar = Epipolar::new(&views[0], &views[1]).unwrap();
     let targets = views.map(|view| Target::new(gpu, view.size).unwrap());
-    renderer.render_pair(gpu, prepared, &epipolar, [&targets[0], &targets[1]]).unwrap();
+    renderer
+        .render_pair(gpu, prepared, &epipolar, PairMethod::default(), [&targets[0], &targets[1]])
+        .unwrap();
     targets.map(|target| target.read(gpu).unwrap())
 }
 
@@ -134,7 +138,13 @@ fn what_cannot_be_derived_is_said() {
         let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap();
         let epipolar = Epipolar::new(&left, &right).unwrap();
         let targets = [left, right].map(|view| Target::new(gpu, view.size).unwrap());
-        let refused = renderer.render_pair(gpu, &prepared, &epipolar, [&targets[0], &targets[1]]);
+        let refused = renderer.render_pair(
+            gpu,
+            &prepared,
+            &epipolar,
+            PairMethod::default(),
+            [&targets[0], &targets[1]],
+        );
         assert!(matches!(refused, Err(PairError::Mode)), "{refused:?}");
     });
     let turned = View { view_from_world: DAffine3::from_rotation_y(0.1) * right.view_from_world, ..right };

@@ -1,0 +1,102 @@
+import package::lib::classify::{VALUE_OFFSET, may_be_visible};
+import package::lib::composite::{FIRST_HIT_ALPHA, SEARCHES, STRETCH, blend, start_ray};
+import package::lib::cast_parameters::{parameters};
+import package::lib::pair::{pair};
+import package::lib::ray::{Ray, ray_at, ray_depth_m};
+import package::lib::ray_state::{NOTHING_HIT, RayState};
+import package::lib::segment_sink::{SegmentPlace, put_segment};
+import package::lib::skip::{next_run, start_walk};
+import package::lib::volume::{value_at};
+
+// Rays of the reference view cut into segments, one for each slab of depth: all samples of a slab land on the same derived
+// column. `depth_m` of a segment is that of its first sample.
+
+// A ray with a segment behind what it holds.
+fn append(before: RayState, segment: RayState) -> RayState {
+    var state = before;
+    state.color += segment.color * state.transmittance;
+    state.transmittance *= segment.transmittance;
+    if state.depth_m == NOTHING_HIT && state.transmittance <= 1.0 - FIRST_HIT_ALPHA {
+        state.depth_m = segment.depth_m;
+    }
+    return state;
+}
+
+// The slab of a depth.
+fn slab_at(depth_m: f32) -> i32 {
+    return clamp(i32(ceil(pair.k / depth_m - pair.offset)), pair.furthest, pair.nearest);
+}
+
+// First sample behind a slab.
+fn end_of_slab(ray: Ray, slab: i32) -> u32 {
+    let over = f32(slab) - 1.0 + pair.offset;
+    if over <= 0.0 || slab == pair.furthest {
+        return ray.sample_count;
+    }
+    let samples = ceil((pair.k / over - ray.first_depth_m) / ray.step_depth_m);
+    return u32(clamp(samples, 0.0, f32(ray.sample_count)));
+}
+
+// Casts the ray of a column and hands each slab's segment over; `place` is what the sink knows the ray by.
+fn cast_segments(ray: Ray, place: SegmentPlace) -> RayState {
+    let walk = start_walk(ray.first, ray.step);
+    let end = ray.sample_count;
+    var state = start_ray(ray);
+    var segment = state;
+    var slab = pair.nearest;
+    var slab_end = 0u;
+    var run_end = 0u;
+    var i = 0u;
+    while i < end && state.is_finished == 0u {
+        if i >= run_end {
+            let run = next_run(walk, i, end, 0.0);
+            state.map_reads += run.map_reads;
+            if VALUE_OFFSET != 0.0 && run.begin != i {
+                segment.scalar = value_at(ray_at(ray, f32(run.begin) + VALUE_OFFSET - 1.0));
+            }
+            i = run.begin;
+            run_end = run.end;
+        }
+        if i >= slab_end {
+            if segment.transmittance < 1.0 {
+                put_segment(place, slab, segment);
+                state = append(state, segment);
+                segment.color = vec3f(0.0);
+                segment.transmittance = 1.0;
+            }
+            segment.depth_m = ray_depth_m(ray, f32(i));
+            slab = slab_at(segment.depth_m);
+            slab_end = max(end_of_slab(ray, slab), i + 1u);
+        }
+        let begin = i;
+        let stretch_end = min(i + STRETCH, min(run_end, slab_end));
+        while i < stretch_end {
+            var value = 0.0;
+            var is_found = false;
+            loop {
+                value = value_at(ray_at(ray, f32(i) + VALUE_OFFSET));
+                is_found = may_be_visible(value, segment.scalar);
+                if is_found || !SEARCHES || i + 1u >= stretch_end {
+                    break;
+                }
+                segment.scalar = value;
+                i++;
+            }
+            if is_found {
+                segment = blend(ray, i, value, segment);
+            }
+            segment.scalar = value;
+            i++;
+            if state.transmittance * segment.transmittance <= 1.0 - parameters.termination_alpha {
+                state.is_finished = 1u;
+                break;
+            }
+        }
+        state.samples += i - begin;
+    }
+    if segment.transmittance < 1.0 {
+        put_segment(place, slab, segment);
+        state = append(state, segment);
+    }
+    return state;
+}

@@ -1,0 +1,23 @@
+import package::lib::composite::{FIRST_HIT_ALPHA};
+import package::lib::ray_state::{RayState};
+import package::lib::strips::{partial_at, partial_depths_m, partials};
+
+// Segments go into the partial sums of their strip.
+
+struct SegmentPlace {
+    row: u32,
+    strip: u32,
+    // Sweep column of the ray.
+    column: i32,
+}
+
+// Puts a segment behind what others have left in the derived column of its slab.
+fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
+    let at = partial_at(place.row, place.strip, place.column - slab);
+    let held = partials[at];
+    let sum = held + vec4f(segment.color, 1.0 - segment.transmittance) * (1.0 - held.a);
+    partials[at] = sum;
+    if held.a < FIRST_HIT_ALPHA && sum.a >= FIRST_HIT_ALPHA {
+        partial_depths_m[at] = segment.depth_m;
+    }
+}

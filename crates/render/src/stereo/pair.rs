@@ -1,0 +1,170 @@
+//! One pair of pictures.
+
+use super::{Form, PairError, PairMethod};
+use crate::gpu::{Gpu, GpuError};
+use crate::groups::Bindings;
+use crate::pacer::{BAND_ROWS, ITERATION_LIMIT, spreading_stride};
+use crate::renderer::{Prepared, Renderer, Squares};
+use crate::target::Target;
+use crate::uniforms::ViewUniform;
+use std::ops::Range;
+use std::time::{Duration, Instant};
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::scene::Mode;
+use wheatstone_core::stereo::{Epipolar, SlabRange};
+
+/// Rays that software Vulkan casts in lockstep; each may wait for the others.
+const LOCKSTEP_RAYS: u32 = 8;
+
+/// What a pair has taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PairReport {
+    /// Bytes on the device besides both pictures.
+    pub bytes: u64,
+    /// Time of emptying what the last pair has left.
+    pub clear: Duration,
+    /// Time of casting.
+    pub cast: Duration,
+    /// Time of making the derived picture of what the cast has left.
+    pub composite: Duration,
+}
+
+/// What the forms need of a pair.
+pub(crate) struct PairFrame<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) epipolar: &'a Epipolar,
+    /// Slabs that the volume is in.
+    pub(crate) slabs: SlabRange,
+    /// Sweep columns of the rays that meet the volume and that either picture needs.
+    pub(crate) columns: Range<i32>,
+    /// Rays that a driver takes one after the other in a dispatch.
+    pub(crate) most_rays: u32,
+    /// Squares of pixels that the volume covers, in the reference picture and in the derived one.
+    covered: [Squares; 2],
+    targets: [wgpu::BindGroup; 2],
+}
+
+/// Which picture of a pair.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Eye {
+    Reference,
+    Derived,
+}
+
+impl Renderer {
+    /// Casts the reference view of a pair and derives the other from its rays (SP), into a target for each, and waits until
+    /// both are done.
+    ///
+    /// # Errors
+    /// What keeps the one view from being derived from the other; no memory, a lost or hung device.
+    ///
+    /// # Panics
+    /// If a target has another size than the views.
+    pub fn render_pair(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        epipolar: &Epipolar,
+        method: PairMethod,
+        targets: [&Target; 2],
+    ) -> Result<PairReport, PairError> {
+        let size = epipolar.reference().size;
+        assert!(targets.iter().all(|target| target.size() == size), "targets have the size of their views");
+        if prepared.parameters.mode != Mode::Composite {
+            return Err(PairError::Mode);
+        }
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        targets.iter().for_each(|target| target.clear(&mut encoder));
+        gpu.queue.submit([encoder.finish()]);
+        let Some(frame) = self.pair_frame(gpu, prepared, epipolar, targets)? else {
+            return Ok(PairReport::default());
+        };
+        match method.form {
+            Form::Strips => self.strips(gpu)?.render(&frame),
+        }
+    }
+
+    /// What the forms need; nothing if no ray meets the volume.
+    fn pair_frame<'a>(
+        &self,
+        gpu: &'a Gpu,
+        prepared: &'a Prepared,
+        epipolar: &'a Epipolar,
+        targets: [&Target; 2],
+    ) -> Result<Option<PairFrame<'a>>, PairError> {
+        let parameters = &prepared.parameters;
+        let size = epipolar.reference().size;
+        let corners = parameters.visible_corners_world();
+        let Some(depths_m) = epipolar.depths_m(&corners) else { return Ok(None) };
+        let slabs = epipolar.slabs().between(depths_m.start, depths_m.end);
+        let columns = epipolar.columns_of(&corners, &slabs.cast_columns(size[0]));
+        if columns.is_empty() {
+            return Ok(None);
+        }
+        let samples = parameters.most_samples_per_ray();
+        let iterations_per_ray = samples
+            .saturating_mul(prepared.iterations_per_sample)
+            .saturating_add(LOCKSTEP_RAYS * slabs.layers());
+        let most_rays = ITERATION_LIMIT / iterations_per_ray;
+        if most_rays == 0 {
+            return Err(PairError::LongRays { samples });
+        }
+        Ok(Some(PairFrame {
+            gpu,
+            prepared,
+            epipolar,
+            slabs,
+            columns,
+            most_rays,
+            covered: [epipolar.reference(), epipolar.derived()].map(|view| Squares::covered(view, &corners)),
+            targets: targets.map(|target| self.target_group(gpu, target, self.unused.each_ref())),
+        }))
+    }
+}
+
+impl PairFrame<'_> {
+    pub(crate) fn parameters(&self) -> &CastParameters {
+        &self.prepared.parameters
+    }
+
+    /// Width and height of both pictures, pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.epipolar.reference().size
+    }
+
+    /// Squares of `BAND_ROWS` pixels, along x and y, that the volume covers in a picture.
+    pub(crate) fn squares(&self, eye: Eye) -> [u32; 2] {
+        self.covered[eye as usize].counts()
+    }
+
+    /// Makes a picture the one that the next dispatches are about, in the squares that the volume covers. Rays are those of
+    /// the reference eye for either.
+    pub(crate) fn bind(&self, eye: Eye) -> Bindings<'_> {
+        let covered = &self.covered[eye as usize];
+        let is_software = self.gpu.description().is_software;
+        let piece = ViewUniform {
+            first_row: covered.bands.start * BAND_ROWS,
+            row_count: covered.rows(self.size()[1]),
+            first_column: covered.columns.start * BAND_ROWS,
+            band_stride: if is_software { spreading_stride(covered.bands.len() as u32) } else { 1 },
+            ..ViewUniform::new(self.parameters(), self.epipolar.reference())
+        };
+        self.gpu.queue.write_buffer(&self.prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
+        Bindings {
+            frame: &self.prepared.frame,
+            volume: &self.prepared.volume,
+            target: &self.targets[eye as usize],
+        }
+    }
+
+    /// Encodes commands, sends them off, waits until they are done and returns the time that they took.
+    pub(crate) fn run(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<Duration, GpuError> {
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encode(&mut encoder);
+        let start = Instant::now();
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait()?;
+        Ok(start.elapsed())
+    }
+}
