@@ -1,6 +1,7 @@
 //! Where the eyes are and what they look through.
 
 use crate::failure::Failure;
+use crate::picture::Picture;
 use crate::spec;
 use clap::{Args, ValueEnum};
 use wheatstone_core::image::{Image, RgbImage};
@@ -41,7 +42,7 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_enum, ignore_case = true, default_value_t = Up::S)]
     pub(crate) up: Up,
 
-    /// One picture for one eye, or for two: the left eye's on the left, on top, or in red.
+    /// One picture for one eye, or for two: the left eye's on the left, on top, in red, or in turns with the right eye's.
     #[arg(long, value_enum, default_value_t = Stereo::None)]
     pub(crate) stereo: Stereo,
 
@@ -97,10 +98,27 @@ pub(crate) enum Stereo {
     TopBottom,
     /// Red for the left eye, cyan for the right one.
     Anaglyph,
+    /// Both eyes in turns, as an animated GIF.
+    Wobble,
     /// The left eye alone.
     Left,
     /// The right eye alone.
     Right,
+}
+
+impl Stereo {
+    /// Whether both eyes' pictures are made.
+    pub(crate) fn has_both_eyes(self) -> bool {
+        match self {
+            Self::SideBySide | Self::TopBottom | Self::Anaglyph | Self::Wobble => true,
+            Self::None | Self::Left | Self::Right => false,
+        }
+    }
+
+    /// Extension of the file that the picture is written to.
+    pub(crate) fn extension(self) -> &'static str {
+        if self == Self::Wobble { "gif" } else { "png" }
+    }
 }
 
 impl CameraArgs {
@@ -143,13 +161,17 @@ impl CameraArgs {
     }
 
     /// Puts the views' images into one picture.
-    pub(crate) fn arrange(&self, images: &[&Image], background: [f32; 3]) -> RgbImage {
+    pub(crate) fn arrange(&self, images: &[&Image], background: [f32; 3]) -> Picture {
         let eyes: Vec<RgbImage> = images.iter().map(|image| image.over_background(background)).collect();
-        match (self.stereo, &eyes[..]) {
-            (Stereo::SideBySide, [left, right]) => left.beside(right),
-            (Stereo::TopBottom, [left, right]) => left.above(right),
-            (Stereo::Anaglyph, [left, right]) => left.anaglyph(right),
-            (_, eyes) => eyes[0].clone(),
+        match <[RgbImage; 2]>::try_from(eyes) {
+            Ok([left, right]) => match self.stereo {
+                Stereo::SideBySide => Picture::Still(left.beside(&right)),
+                Stereo::TopBottom => Picture::Still(left.above(&right)),
+                Stereo::Anaglyph => Picture::Still(left.anaglyph(&right)),
+                Stereo::Wobble => Picture::Wobble([left, right]),
+                Stereo::None | Stereo::Left | Stereo::Right => Picture::Still(left),
+            },
+            Err(mut eyes) => Picture::Still(eyes.swap_remove(0)),
         }
     }
 }

@@ -10,6 +10,8 @@ mod failure;
 mod heat_map;
 mod look;
 mod output;
+mod pair_cost;
+mod pairing;
 mod picture;
 mod plot;
 mod progress;

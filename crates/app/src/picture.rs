@@ -1,11 +1,13 @@
-//! PNG files.
+//! Picture files.
 
 use crate::failure::Failure;
 use crate::spec;
 use clap::ValueEnum;
+use image::codecs::gif::{GifEncoder, Repeat};
+use image::codecs::png::PngEncoder;
 use image::{
-    DynamicImage, ExtendedColorType, ImageDecoder as _, ImageEncoder as _, ImageError,
-    codecs::png::PngEncoder,
+    Delay, DynamicImage, ExtendedColorType, Frame, ImageDecoder as _, ImageEncoder as _, ImageError,
+    RgbImage as Rgb8,
 };
 use std::io;
 use std::path::Path;
@@ -23,6 +25,63 @@ pub(crate) enum Bits {
     Sixteen,
 }
 
+/// How long each eye is seen in a wobbling picture, ms.
+const WOBBLE_MS: u32 = 150;
+
+/// What a file shows.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Picture {
+    /// One picture: a PNG file.
+    Still(RgbImage),
+    /// The left eye's and the right eye's in turns, of one size: an animated GIF file.
+    Wobble([RgbImage; 2]),
+}
+
+/// Of 1 (the best choice of 256 colours) to 30 (the fastest).
+const GIF_SPEED: i32 = 10;
+
+impl Picture {
+    /// Width and height, pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        let (Self::Still(picture) | Self::Wobble([picture, _])) = self;
+        [picture.width, picture.height]
+    }
+
+    /// Writes the file by way of a temporary one; `bits` are those of a PNG file.
+    pub(crate) fn write(&self, path: &Path, bits: Bits) -> Result<(), Failure> {
+        match self {
+            Self::Still(picture) => write_png(path, picture, bits),
+            Self::Wobble(eyes) => write_gif(path, eyes),
+        }
+    }
+}
+
+/// Writes pictures in endless turns by way of a temporary file.
+fn write_gif(path: &Path, pictures: &[RgbImage]) -> Result<(), Failure> {
+    let frame = |picture: &RgbImage| {
+        let rgb = Rgb8::from_raw(picture.width, picture.height, picture.to_rgb8());
+        let rgb = rgb.ok_or_else(|| io::Error::other("a picture without its pixels"))?;
+        let delay = Delay::from_numer_denom_ms(WOBBLE_MS, 1);
+        Ok::<_, io::Error>(Frame::from_parts(DynamicImage::from(rgb).into_rgba8(), 0, 0, delay))
+    };
+    write_atomically(path, |writer| {
+        let mut encoder = GifEncoder::new_with_speed(writer, GIF_SPEED);
+        encoder.set_repeat(Repeat::Infinite).map_err(io_error)?;
+        for picture in pictures {
+            encoder.encode_frame(frame(picture)?).map_err(io_error)?;
+        }
+        Ok(())
+    })?;
+    Ok(())
+}
+
+fn io_error(error: ImageError) -> io::Error {
+    match error {
+        ImageError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
 /// Writes a picture by way of a temporary file.
 pub(crate) fn write_png(path: &Path, picture: &RgbImage, bits: Bits) -> Result<(), Failure> {
     let (bytes, color_type) = match bits {
@@ -32,12 +91,9 @@ pub(crate) fn write_png(path: &Path, picture: &RgbImage, bits: Bits) -> Result<(
         }
     };
     write_atomically(path, |writer| {
-        PngEncoder::new(writer).write_image(&bytes, picture.width, picture.height, color_type).map_err(
-            |error| match error {
-                ImageError::IoError(error) => error,
-                other => io::Error::other(other),
-            },
-        )
+        PngEncoder::new(writer)
+            .write_image(&bytes, picture.width, picture.height, color_type)
+            .map_err(io_error)
     })?;
     Ok(())
 }
@@ -75,6 +131,23 @@ fn over_black(decoded: DynamicImage) -> RgbImage {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_wobble_is_both_pictures_in_turns() {
+        use image::AnimationDecoder as _;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("w.gif");
+        let eye = |level| RgbImage { width: 3, height: 2, rgb: vec![[level; 3]; 6] };
+        let wobble = Picture::Wobble([eye(0.2), eye(0.8)]);
+        wobble.write(&path, Bits::Eight).unwrap();
+        assert_eq!(wobble.size(), [3, 2]);
+        let file = io::BufReader::new(std::fs::File::open(path).unwrap());
+        let decoder = image::codecs::gif::GifDecoder::new(file).unwrap();
+        let frames = decoder.into_frames().collect_frames().unwrap();
+        let levels: Vec<u8> = frames.iter().map(|frame| frame.buffer().get_pixel(2, 1).0[0]).collect();
+        assert_eq!(levels, [51, 204]);
+        assert!(frames.iter().all(|frame| frame.delay().numer_denom_ms() == (WOBBLE_MS, 1)));
+    }
 
     #[test]
     fn pictures_come_back() {

@@ -151,6 +151,17 @@ impl CastParameters {
         }
     }
 
+    /// Samples that shading one visible sample takes.
+    pub fn shading_samples(&self) -> u32 {
+        match self.shading {
+            Shading::None => 0,
+            Shading::Phong => self.gradient.samples(),
+            Shading::Shadow => SHADOW_SAMPLES,
+            Shading::Ambient => AMBIENT_SAMPLES,
+            Shading::Directional { .. } => DIRECTIONAL_STEPS * self.directions.len() as u32,
+        }
+    }
+
     /// Most samples that any ray takes: those of the volume's diagonal.
     pub fn most_samples_per_ray(&self) -> u32 {
         let corners =

@@ -27,8 +27,13 @@ pub struct Comparison {
 impl Comparison {
     /// Structural dissimilarity `(1 − SSIM) / 2`.
     pub fn dssim(&self) -> f64 {
-        0.5 * (1.0 - self.ssim)
+        dssim(self.ssim)
     }
+}
+
+/// Structural dissimilarity `(1 − SSIM) / 2`.
+pub fn dssim(ssim: f64) -> f64 {
+    0.5 * (1.0 - ssim)
 }
 
 /// Pictures (or a mask) that cannot be compared because their sizes differ.
@@ -62,10 +67,7 @@ pub fn compare_where(
     marked: &[bool],
 ) -> Result<Comparison, SizeMismatch> {
     check_sizes(first, second)?;
-    if marked.len() != first.width as usize * first.height as usize {
-        let length = u32::try_from(marked.len()).unwrap_or(u32::MAX);
-        return Err(SizeMismatch { first: size(first), second: [length, 1] });
-    }
+    check_mask(size(first), marked)?;
     Ok(compare_sized(first, second, Some(marked)))
 }
 
@@ -81,6 +83,14 @@ fn check_sizes(first: &RgbImage, second: &RgbImage) -> Result<(), SizeMismatch> 
     }
 }
 
+fn check_mask([width, height]: [u32; 2], marked: &[bool]) -> Result<(), SizeMismatch> {
+    if marked.len() == width as usize * height as usize {
+        return Ok(());
+    }
+    let length = u32::try_from(marked.len()).unwrap_or(u32::MAX);
+    Err(SizeMismatch { first: [width, height], second: [length, 1] })
+}
+
 fn compare_sized(first: &RgbImage, second: &RgbImage, marked: Option<&[bool]>) -> Comparison {
     let (mut square_sum, mut count, mut max_abs) = (0.0_f64, 0_u64, 0.0_f64);
     for (i, (a, b)) in first.rgb.iter().zip(&second.rgb).enumerate() {
@@ -94,41 +104,100 @@ fn compare_sized(first: &RgbImage, second: &RgbImage, marked: Option<&[bool]>) -
         }
     }
     let mean_square = square_sum / count.max(1) as f64;
-    Comparison { ssim: mean_ssim(first, second, marked), psnr_db: -10.0 * mean_square.log10(), max_abs }
+    let map = SsimMap::of_one_size(first, second);
+    let ssim = marked.map_or_else(|| map.mean(), |marked| map.mean_of_marked(marked));
+    Comparison { ssim, psnr_db: -10.0 * mean_square.log10(), max_abs }
+}
+
+/// SSIM of every window of two pictures, averaged over channels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SsimMap {
+    /// Width and height of the pictures, pixels.
+    size: [usize; 2],
+    /// Width and height of a window, pixels.
+    window: [usize; 2],
+    /// One per position of a window, row by row from the top left.
+    ssim: Vec<f64>,
+}
+
+impl SsimMap {
+    /// Compares two pictures of one size window by window. An axis shorter than the SSIM window gets one window of its
+    /// whole length.
+    ///
+    /// # Errors
+    /// [`SizeMismatch`] if the sizes differ.
+    pub fn new(first: &RgbImage, second: &RgbImage) -> Result<Self, SizeMismatch> {
+        check_sizes(first, second)?;
+        Ok(Self::of_one_size(first, second))
+    }
+
+    fn of_one_size(first: &RgbImage, second: &RgbImage) -> Self {
+        let size = size(first).map(|side| side as usize);
+        let window = size.map(|side| side.min(SSIM_WINDOW));
+        if size.contains(&0) {
+            return Self { size, window, ssim: Vec::new() };
+        }
+        let pixels = (window[0] * window[1]) as f64;
+        let ssim = (0..=size[1] - window[1])
+            .into_par_iter()
+            .flat_map_iter(|top| {
+                let columns = prefix_sums(first, second, top..top + window[1]);
+                let of_window =
+                    move |left: usize| window_ssim(&columns[left], &columns[left + window[0]], pixels);
+                (0..=size[0] - window[0]).map(of_window)
+            })
+            .collect();
+        Self { size, window, ssim }
+    }
+
+    /// Mean over all windows; 1 of none.
+    pub fn mean(&self) -> f64 {
+        mean(self.ssim.iter().copied())
+    }
+
+    /// Mean over the windows that touch a marked pixel; 1 of none.
+    ///
+    /// # Errors
+    /// [`SizeMismatch`] if the mask does not hold one entry per pixel.
+    pub fn mean_where(&self, marked: &[bool]) -> Result<f64, SizeMismatch> {
+        check_mask(self.size.map(|side| side as u32), marked)?;
+        Ok(self.mean_of_marked(marked))
+    }
+
+    fn mean_of_marked(&self, marked: &[bool]) -> f64 {
+        if self.ssim.is_empty() {
+            return 1.0;
+        }
+        let per_row = self.size[0] - self.window[0] + 1;
+        mean(self.ssim.chunks(per_row).enumerate().flat_map(|(top, row)| {
+            let marks = prefix_marks(marked, self.size[0], top..top + self.window[1]);
+            row.iter()
+                .enumerate()
+                .filter(move |&(left, _)| marks[left + self.window[0]] > marks[left])
+                .map(|(_, &ssim)| ssim)
+        }))
+    }
+
+    /// For each pixel that of the window around it; near an edge that of the last window.
+    pub fn around_pixels(&self) -> Vec<f64> {
+        let [width, height] = self.size;
+        let per_row = width - self.window[0] + 1;
+        let begin = |at: usize, axis: usize| {
+            at.saturating_sub(self.window[axis] / 2).min(self.size[axis] - self.window[axis])
+        };
+        (0..height)
+            .flat_map(|y| (0..width).map(move |x| self.ssim[begin(y, 1) * per_row + begin(x, 0)]))
+            .collect()
+    }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0_u64), |(sum, count), value| (sum + value, count + 1));
+    if count == 0 { 1.0 } else { sum / count as f64 }
 }
 
 /// Sums over a window or a column of it: Σx, Σy, Σx², Σy², Σxy for each of three channels.
 type Moments = [[f64; 5]; 3];
-
-fn mean_ssim(first: &RgbImage, second: &RgbImage, marked: Option<&[bool]>) -> f64 {
-    let (width, height) = (first.width as usize, first.height as usize);
-    if width == 0 || height == 0 {
-        return 1.0;
-    }
-    let (window_width, window_height) = (width.min(SSIM_WINDOW), height.min(SSIM_WINDOW));
-    let (sum, windows) = (0..=height - window_height)
-        .into_par_iter()
-        .map(|top| {
-            let rows = top..top + window_height;
-            let columns = prefix_sums(first, second, rows.clone());
-            let marks = marked.map(|marked| prefix_marks(marked, width, rows));
-            let mut sum = 0.0;
-            let mut windows = 0_u64;
-            for left in 0..=width - window_width {
-                let right = left + window_width;
-                if marks.as_ref().is_none_or(|marks| marks[right] > marks[left]) {
-                    sum +=
-                        window_ssim(&columns[left], &columns[right], (window_width * window_height) as f64);
-                    windows += 1;
-                }
-            }
-            (sum, windows)
-        })
-        .collect::<Vec<_>>()
-        .into_iter()
-        .fold((0.0, 0), |(sum, windows), (s, w)| (sum + s, windows + w));
-    if windows == 0 { 1.0 } else { sum / windows as f64 }
-}
 
 /// Entry `x` holds the moments of all pixels of the rows that lie left of column `x`.
 fn prefix_sums(first: &RgbImage, second: &RgbImage, rows: std::ops::Range<usize>) -> Vec<Moments> {
@@ -283,10 +352,36 @@ mod tests {
     }
 
     #[test]
+    fn a_map_tells_where_pictures_differ() {
+        let a = constant(24, 16, 0.2);
+        let mut b = a.clone();
+        b.rgb[4 * 24 + 4] = [0.9; 3];
+        let map = SsimMap::new(&a, &b).unwrap();
+        assert_eq!(map.mean(), compare(&a, &b).unwrap().ssim);
+        let around = map.around_pixels();
+        assert_eq!(around.len(), 24 * 16);
+        for (i, &ssim) in around.iter().enumerate() {
+            let is_near = i % 24 <= 8 && i / 24 <= 8;
+            assert_eq!(ssim < 1.0 - 1e-9, is_near, "{} {}", i % 24, i / 24);
+        }
+        let mut marked = vec![false; 24 * 16];
+        assert_eq!(map.mean_where(&marked), Ok(1.0));
+        marked[4 * 24 + 4] = true;
+        let covered = map.mean_where(&marked).unwrap();
+        assert_eq!(covered, compare_where(&a, &b, &marked).unwrap().ssim);
+        assert!(covered < map.mean());
+        assert!(SsimMap::new(&constant(0, 5, 0.0), &constant(0, 5, 0.0)).unwrap().around_pixels().is_empty());
+    }
+
+    #[test]
     fn sizes_must_agree() {
         let error = compare(&constant(3, 4, 0.0), &constant(4, 3, 0.0)).unwrap_err();
         assert_eq!(error, SizeMismatch { first: [3, 4], second: [4, 3] });
         assert!(compare_where(&constant(3, 4, 0.0), &constant(3, 4, 0.0), &[true]).is_err());
+        assert!(SsimMap::new(&constant(3, 4, 0.0), &constant(4, 3, 0.0)).is_err());
+        assert!(
+            SsimMap::new(&constant(3, 4, 0.0), &constant(3, 4, 0.0)).unwrap().mean_where(&[true]).is_err()
+        );
         assert_eq!(compare(&constant(0, 5, 0.0), &constant(0, 5, 0.0)).unwrap().ssim, 1.0);
     }
 }

@@ -55,6 +55,16 @@ pub enum GradientMethod {
     Tetrahedron,
 }
 
+impl GradientMethod {
+    /// Samples that an estimate takes.
+    pub fn samples(self) -> u32 {
+        match self {
+            Self::CentralDifferences => 6,
+            Self::Tetrahedron => 4,
+        }
+    }
+}
+
 /// Where light comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Light {

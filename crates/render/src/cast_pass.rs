@@ -241,20 +241,9 @@ pub(crate) fn iterations_per_sample(parameters: &CastParameters, leap: &Leap<'_>
 
 /// Reads of the volume that a visible sample costs at most.
 pub(crate) fn reads_per_sample(parameters: &CastParameters) -> u32 {
-    let gradient_reads = match parameters.gradient {
-        GradientMethod::CentralDifferences => 6,
-        GradientMethod::Tetrahedron => 4,
-    };
     let classifier_reads =
-        if parameters.classifier == Classifier::ValueGradient { gradient_reads } else { 0 };
-    let shading_samples = match parameters.shading {
-        Shading::None => 0,
-        Shading::Phong => gradient_reads,
-        Shading::Shadow => SHADOW_SAMPLES,
-        Shading::Ambient => AMBIENT_SAMPLES,
-        Shading::Directional { .. } => DIRECTIONAL_STEPS * parameters.directions.len() as u32,
-    };
-    1 + classifier_reads + shading_samples * (1 + classifier_reads)
+        if parameters.classifier == Classifier::ValueGradient { parameters.gradient.samples() } else { 0 };
+    1 + classifier_reads + parameters.shading_samples() * (1 + classifier_reads)
 }
 
 /// Pipelines of a kernel's variants, built when first asked for.

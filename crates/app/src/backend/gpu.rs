@@ -1,6 +1,7 @@
 //! A volume on a GPU.
 
-use super::{GradientMapSize, Leaping, Shot, median_ms};
+use super::{GradientMapSize, Leaping, NoPair, PairCast, Shot, median_ms};
+use crate::pairing::Pairing;
 use crate::progress::Bar;
 use crate::skipping::Skipping;
 use std::time::{Duration, Instant};
@@ -9,11 +10,13 @@ use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{GradientMethod, Mode};
 use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest};
+use wheatstone_core::stereo::Epipolar;
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, GpuSkipMap, SkipBuilder, SkipKernels};
 use wheatstone_render::{
-    Gpu, GpuError, GpuGradientMap, GpuVolume, Leap, Prepared, Renderer, Sources, Target, TexelFormat,
+    Gpu, GpuError, GpuGradientMap, GpuVolume, Leap, PairError, Prepared, Renderer, Sources, Target,
+    TexelFormat,
 };
 
 /// The GPU's side of [`super::Engine`].
@@ -25,7 +28,9 @@ pub(crate) struct GpuEngine {
     kernels: Option<SkipKernels>,
     gradient_map: Option<((GradientMethod, GradientDepth), GpuGradientMap)>,
     scenes: Vec<Scene>,
+    /// One for each view that was ever cast at a time; the last cast is in the first `cast_count`.
     targets: Vec<Target>,
+    cast_count: usize,
     pub(super) upload: Duration,
 }
 
@@ -61,6 +66,7 @@ impl GpuEngine {
             gradient_map: None,
             scenes: Vec::new(),
             targets: Vec::new(),
+            cast_count: 0,
             upload,
         })
     }
@@ -161,18 +167,43 @@ impl GpuEngine {
     }
 
     pub(super) fn cast(&mut self, shot: Shot, views: &[View]) -> Result<Duration, GpuError> {
-        let fits = self.targets.len() == views.len()
-            && self.targets.iter().zip(views).all(|(target, view)| target.size() == view.size);
-        if !fits {
-            self.targets = views.iter().map(|v| Target::new(&self.gpu, v.size)).collect::<Result<_, _>>()?;
-        }
+        self.fit_targets(views)?;
+        let targets = &self.targets[..views.len()];
         let start = Instant::now();
-        self.renderer.render(&self.gpu, &self.scenes[shot.0].prepared, views, &self.targets)?;
+        self.renderer.render(&self.gpu, &self.scenes[shot.0].prepared, views, targets)?;
         Ok(start.elapsed())
     }
 
+    pub(super) fn cast_pair(
+        &mut self,
+        shot: Shot,
+        views: [View; 2],
+        pairing: &Pairing,
+    ) -> Result<PairCast, NoPair> {
+        let [reference, derived] = pairing.reference.and_other(views);
+        let epipolar = Epipolar::new(&reference, &derived).map_err(PairError::from)?;
+        self.fit_targets(&views).map_err(NoPair::Gpu)?;
+        let targets = pairing.reference.and_other([&self.targets[0], &self.targets[1]]);
+        let prepared = &self.scenes[shot.0].prepared;
+        let start = Instant::now();
+        let report = self.renderer.render_pair(&self.gpu, prepared, &epipolar, pairing.method(), targets)?;
+        Ok(PairCast { time: start.elapsed(), report })
+    }
+
+    /// Sees to it that the first targets have the sizes of the views.
+    fn fit_targets(&mut self, views: &[View]) -> Result<(), GpuError> {
+        for (i, view) in views.iter().enumerate() {
+            if self.targets.get(i).is_none_or(|target| target.size() != view.size) {
+                self.targets.truncate(i);
+                self.targets.push(Target::new(&self.gpu, view.size)?);
+            }
+        }
+        self.cast_count = views.len();
+        Ok(())
+    }
+
     pub(super) fn read(&self) -> Result<Vec<Cast>, GpuError> {
-        self.targets.iter().map(|target| target.read(&self.gpu)).collect()
+        self.targets[..self.cast_count].iter().map(|target| target.read(&self.gpu)).collect()
     }
 
     pub(super) fn leaping(&self, shot: Shot) -> &Leaping {

@@ -4,6 +4,7 @@ mod cpu;
 mod gpu;
 
 use crate::failure::Failure;
+use crate::pairing::Pairing;
 use crate::skipping::Skipping;
 use clap::ValueEnum;
 use cpu::CpuEngine;
@@ -16,7 +17,7 @@ use wheatstone_core::reference::Cast;
 use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
-use wheatstone_render::{Gpu, GpuError};
+use wheatstone_render::{Gpu, GpuError, PairError, PairReport};
 
 /// Which caster the user asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -36,6 +37,8 @@ pub(crate) struct Job {
     pub(crate) rays: u64,
     /// Samples along a ray through the volume's longest side.
     pub(crate) samples_per_ray: f64,
+    /// Whether something is asked for that only a GPU does.
+    pub(crate) needs_gpu: bool,
 }
 
 /// Samples from which software Vulkan's speed pays for its start (device, upload, compiling the kernel).
@@ -45,9 +48,9 @@ pub(crate) struct Job {
 const SOFTWARE_VULKAN_FROM_SAMPLES: f64 = 1e8;
 
 /// Whether software Vulkan is likely to finish a job before the CPU renderer does: it casts faster, but takes
-/// longer to start.
+/// longer to start. And whether it alone can do it.
 pub(crate) fn prefers_software_vulkan(job: &Job) -> bool {
-    job.rays as f64 * job.samples_per_ray >= SOFTWARE_VULKAN_FROM_SAMPLES
+    job.needs_gpu || job.rays as f64 * job.samples_per_ray >= SOFTWARE_VULKAN_FROM_SAMPLES
 }
 
 /// A volume on a caster.
@@ -61,6 +64,33 @@ pub(crate) enum Engine<'v> {
 /// Settings that an engine has prepared.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shot(usize);
+
+/// A pair that one cast has made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PairCast {
+    /// Time of both pictures, without reading back.
+    pub(crate) time: Duration,
+    /// What it has taken.
+    pub(crate) report: PairReport,
+}
+
+/// Why one cast has made no pair.
+#[derive(Debug)]
+pub(crate) enum NoPair {
+    /// What keeps the one picture from being derived from the rays of the other; two casts can make the pair.
+    Refused(String),
+    /// The device.
+    Gpu(GpuError),
+}
+
+impl From<PairError> for NoPair {
+    fn from(error: PairError) -> Self {
+        match error {
+            PairError::Gpu(error) => Self::Gpu(error),
+            other => Self::Refused(other.to_string()),
+        }
+    }
+}
 
 /// What rays leap over, as reports tell it.
 #[derive(Debug, Clone)]
@@ -234,6 +264,19 @@ impl<'v> Engine<'v> {
         }
     }
 
+    /// Makes a pair, left view first, of one cast.
+    pub(crate) fn cast_pair(
+        &mut self,
+        shot: Shot,
+        views: [View; 2],
+        pairing: &Pairing,
+    ) -> Result<PairCast, NoPair> {
+        match self {
+            Self::Gpu(engine) => engine.cast_pair(shot, views, pairing),
+            Self::Cpu(_) => Err(NoPair::Refused("the CPU renderer casts every eye".to_owned())),
+        }
+    }
+
     /// Pictures and sample counts of the last cast, one per view.
     pub(crate) fn read(&mut self) -> Result<Vec<Cast>, GpuError> {
         match self {
@@ -364,7 +407,9 @@ mod tests {
 
     #[test]
     fn small_jobs_stay_on_the_cpu() {
-        assert!(!prefers_software_vulkan(&Job { rays: 256 * 256, samples_per_ray: 256.0 }));
-        assert!(prefers_software_vulkan(&Job { rays: 3840 * 2160 * 2, samples_per_ray: 512.0 }));
+        let small = Job { rays: 256 * 256, samples_per_ray: 256.0, needs_gpu: false };
+        assert!(!prefers_software_vulkan(&small));
+        assert!(prefers_software_vulkan(&Job { needs_gpu: true, ..small }));
+        assert!(prefers_software_vulkan(&Job { rays: 3840 * 2160 * 2, samples_per_ray: 512.0, ..small }));
     }
 }

@@ -5,7 +5,7 @@ use crate::camera::CameraArgs;
 use crate::failure::Failure;
 use crate::look::{Look, LookArgs};
 use crate::output::check_folder;
-use crate::picture::{Bits, write_png};
+use crate::picture::Bits;
 use crate::progress::Bar;
 use crate::skipping::Skipping;
 use crate::spec;
@@ -162,7 +162,7 @@ fn open<'v>(choice: BackendChoice, plans: &[Plan], volume: &'v Volume) -> Result
         rays += views.iter().map(|view| u64::from(view.size[0]) * u64::from(view.size[1])).sum::<u64>();
     }
     let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
-    let job = Job { rays, samples_per_ray: longest as f64 };
+    let job = Job { rays, samples_per_ray: longest as f64, needs_gpu: false };
     Engine::open(choice, &job, volume, StorageKind::lossless_for(volume))
 }
 
@@ -175,9 +175,9 @@ fn take_all(engine: &mut Engine<'_>, plans: &[Plan], folder: &Path) -> Result<Ve
         let casts = engine.read()?;
         let images: Vec<&Image> = casts.iter().map(|cast| &cast.image).collect();
         let picture = plan.args.camera.arrange(&images, plan.args.background);
-        write_png(&folder.join(plan.shot.file), &picture, Bits::Eight)?;
+        picture.write(&folder.join(plan.shot.file), Bits::Eight)?;
         let samples = casts.iter().map(|cast| cast.samples).sum();
-        taken.push(Taken { plan: index, frame_ms, samples, size: [picture.width, picture.height] });
+        taken.push(Taken { plan: index, frame_ms, samples, size: picture.size() });
         bar.advance();
     }
     Ok(taken)

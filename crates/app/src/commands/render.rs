@@ -1,14 +1,15 @@
 //! `render`: a volume file to a picture.
 
 use crate::backend::{
-    BackendChoice, Engine, GradientMapSize, Job, Leaping, Shot, median, milliseconds, note_fallback,
+    BackendChoice, Engine, GradientMapSize, Job, Leaping, NoPair, Shot, median, milliseconds, note_fallback,
 };
 use crate::camera::{CameraArgs, Stereo};
 use crate::failure::Failure;
 use crate::heat_map::{heat_map, most_reads};
 use crate::look::{Look, LookArgs};
 use crate::output::{check_writable, numbered, print_json};
-use crate::picture::{Bits, write_png};
+use crate::pairing::{PairArgs, PairRequest, Pairing};
+use crate::picture::{Bits, Picture};
 use crate::progress::Bar;
 use crate::skipping::{SkipArgs, SkipName, Skipping};
 use crate::spec::{self, Show};
@@ -17,7 +18,7 @@ use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::image::{Image, RgbImage};
+use wheatstone_core::image::Image;
 use wheatstone_core::scene::Placement;
 use wheatstone_core::view::world_from_patient;
 use wheatstone_core::volume::Volume;
@@ -29,6 +30,7 @@ use wheatstone_io::Loaded;
     wheatstone render head.nii.gz -o head.png\n  \
     wheatstone render head.nii.gz -o head.png --tf mri-brain-t1 --shading phong --azimuth 30\n  \
     wheatstone render ct.nrrd -o ct.png --tf ct-bone --stereo side-by-side --size 1024x1024\n  \
+    wheatstone render ct.nrrd -o wobble.gif --tf ct-bone --stereo wobble --stereo-method strips --convergence 1.7\n  \
     wheatstone render ct.nrrd -o mip.png --mode mip --window -100..400 --up A\n  \
     wheatstone render bonsai_256x256x256_uint8.raw -o b.png --tf ramp:0.15..1 --ert 0 --json\n  \
     wheatstone render scan.raw --raw-size 64x64x32 --raw-type int16 -o scan.png --iso 0.4\n  \
@@ -36,7 +38,7 @@ use wheatstone_io::Loaded;
     wheatstone render head.nii.gz -o reads.png --ert 0 --skip distance --block-size 4 --show samples\n\n\
     --tf, --iso, V and G are normalised: 0 and 1 are the ends of the window. docs/cli.md tells which window counts.")]
 pub(crate) struct RenderArgs {
-    /// The PNG file to write.
+    /// The PNG file to write; the GIF file for --stereo wobble.
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
 
@@ -73,6 +75,9 @@ pub(crate) struct RenderArgs {
     camera: CameraArgs,
 
     #[command(flatten)]
+    pair: PairArgs,
+
+    #[command(flatten)]
     look: LookArgs,
 
     #[command(flatten)]
@@ -91,15 +96,19 @@ struct Made {
     white: Option<u32>,
     leaping: Leaping,
     gradient_map: Option<GradientMapSize>,
+    /// How one cast has made the last pair, and the bytes that it has taken besides both pictures.
+    pairing: Option<Pairing>,
+    pair_bytes: Option<u64>,
     picture_size: [u32; 2],
     outputs: Vec<PathBuf>,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
-    check_writable(&args.output, "png")?;
+    check_writable(&args.output, args.camera.stereo.extension())?;
     args.camera.check()?;
     args.look.check()?;
+    let request = args.pair_request()?;
     let skipping = args.skip.resolve(SkipName::Auto)?;
     let mut loaded = args.volume.load()?;
     let look = args.look.resolve(&loaded.volume)?;
@@ -107,12 +116,13 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let volume = &loaded.volume;
     let placement = Placement::new(volume, world_from_patient(volume.grid(), args.camera.up.direction()));
     let parameters = CastParameters::new(&look.settings, &placement);
-    let mut engine = args.open(args.backend, volume)?;
-    let made = match args.make(&mut engine, &parameters, &skipping) {
+    let needs_gpu = request.is_some_and(|request| request.is_single_pass());
+    let mut engine = args.open(args.backend, volume, needs_gpu)?;
+    let made = match args.make(&mut engine, &parameters, &skipping, request) {
         Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
             note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, volume)?;
-            args.make(&mut engine, &parameters, &skipping)?
+            engine = args.open(BackendChoice::Cpu, volume, needs_gpu)?;
+            args.make(&mut engine, &parameters, &skipping, request)?
         }
         made => made?,
     };
@@ -120,22 +130,41 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
 }
 
 impl RenderArgs {
-    fn open<'v>(&self, choice: BackendChoice, volume: &'v Volume) -> Result<Engine<'v>, Failure> {
+    /// How the pair is to be made, if there is one.
+    fn pair_request(&self) -> Result<Option<PairRequest>, Failure> {
+        let is_wobble = self.camera.stereo == Stereo::Wobble;
+        if is_wobble && self.bits != Bits::Eight {
+            return Err(Failure::input("--bits 16 needs a PNG file: --stereo wobble writes a GIF file"));
+        }
+        let request = self.pair.resolve(self.camera.stereo)?;
+        match self.show {
+            Show::Samples(_) if request.is_some_and(|request| request.is_single_pass()) => {
+                Err(Failure::input("--show samples needs a cast of each eye: --stereo-method two-pass"))
+            }
+            Show::Samples(_) => Ok(None),
+            Show::Picture => Ok(request),
+        }
+    }
+
+    fn open<'v>(
+        &self,
+        choice: BackendChoice,
+        volume: &'v Volume,
+        needs_gpu: bool,
+    ) -> Result<Engine<'v>, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
         let job = Job {
             rays: self.rays() * u64::from(frames + u32::from(self.warms_up())),
             samples_per_ray: longest as f64 * self.look.sampling_factor,
+            needs_gpu,
         };
         Engine::open(choice, &job, volume, self.look.storage.kind(volume))
     }
 
-    /// Rays of one frame.
+    /// Pixels of one frame.
     fn rays(&self) -> u64 {
-        let views = match self.camera.stereo {
-            Stereo::None | Stereo::Left | Stereo::Right => 1,
-            Stereo::SideBySide | Stereo::TopBottom | Stereo::Anaglyph => 2,
-        };
+        let views = if self.camera.stereo.has_both_eyes() { 2 } else { 1 };
         self.camera.size.iter().map(|&side| u64::from(side)).product::<u64>() * views
     }
 
@@ -149,10 +178,12 @@ impl RenderArgs {
         engine: &mut Engine<'_>,
         parameters: &CastParameters,
         skipping: &Skipping,
+        request: Option<PairRequest>,
     ) -> Result<Made, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let bar = Bar::new("frames", u64::from(frames));
         let shot = engine.prepare(parameters, skipping)?;
+        let leaps = engine.leaping(shot).block_size.is_some();
         let mut made = Made {
             frames_ms: Vec::new(),
             samples: 0,
@@ -160,15 +191,18 @@ impl RenderArgs {
             white: self.white_of_all(engine, shot)?,
             leaping: engine.leaping(shot).clone(),
             gradient_map: engine.gradient_map_size(shot),
+            pairing: request.and_then(|request| request.pairing(engine, parameters, leaps)),
+            pair_bytes: None,
             picture_size: [0; 2],
             outputs: Vec::new(),
         };
         if self.warms_up() {
-            engine.cast(shot, &self.camera.views(0.0)?)?;
+            self.cast(engine, shot, 0.0, &mut made)?;
         }
         for index in 0..frames {
             let turn_deg = self.turntable.map_or(0.0, |frames| turn_deg(index, frames));
-            made.frames_ms.push(milliseconds(engine.cast(shot, &self.camera.views(turn_deg)?)?));
+            let frame_ms = self.cast(engine, shot, turn_deg, &mut made)?;
+            made.frames_ms.push(frame_ms);
             if let Some(path) = self.path_of(index, frames) {
                 let casts = engine.read()?;
                 let picture = match self.show {
@@ -179,15 +213,40 @@ impl RenderArgs {
                         self.arrange(&maps)
                     }
                 };
-                write_png(&path, &picture, self.bits)?;
+                picture.write(&path, self.bits)?;
                 made.samples = casts.iter().map(|cast| cast.samples).sum();
                 made.map_reads = casts.iter().map(|cast| cast.map_reads).sum();
-                made.picture_size = [picture.width, picture.height];
+                made.picture_size = picture.size();
                 made.outputs.push(path);
             }
             bar.advance();
         }
         Ok(made)
+    }
+
+    /// Casts one frame and returns its time, ms. Where one cast cannot make the pair, two do from then on.
+    fn cast(
+        &self,
+        engine: &mut Engine<'_>,
+        shot: Shot,
+        turn_deg: f64,
+        made: &mut Made,
+    ) -> Result<f64, Failure> {
+        let views = self.camera.views(turn_deg)?;
+        if let (Some(pairing), &[left, right]) = (made.pairing, &views[..]) {
+            match engine.cast_pair(shot, [left, right], &pairing) {
+                Ok(pair) => {
+                    made.pair_bytes = Some(pair.report.bytes);
+                    return Ok(milliseconds(pair.time));
+                }
+                Err(NoPair::Gpu(error)) => return Err(error.into()),
+                Err(NoPair::Refused(why)) => {
+                    eprintln!("note: {} cannot make this pair ({why}): using two-pass", pairing.form.name());
+                    (made.pairing, made.pair_bytes) = (None, None);
+                }
+            }
+        }
+        Ok(milliseconds(engine.cast(shot, &views)?))
     }
 
     /// Samples and map reads of a white pixel in all pictures: those asked for, or the most of any ray of a turntable.
@@ -206,7 +265,7 @@ impl RenderArgs {
         }
     }
 
-    fn arrange<'i>(&self, images: impl IntoIterator<Item = &'i Image>) -> RgbImage {
+    fn arrange<'i>(&self, images: impl IntoIterator<Item = &'i Image>) -> Picture {
         self.camera.arrange(&images.into_iter().collect::<Vec<_>>(), self.background)
     }
 
@@ -216,6 +275,12 @@ impl RenderArgs {
             Some(_) => Some(numbered(&self.output, index)),
             None => (index + 1 == frames).then(|| self.output.clone()),
         }
+    }
+
+    /// Name of what has made both eyes' pictures.
+    fn stereo_method(&self, made: &Made) -> Option<&'static str> {
+        let of_both = self.camera.stereo.has_both_eyes();
+        of_both.then(|| made.pairing.map_or("two-pass", |pairing| pairing.form.name()))
     }
 
     fn report(&self, loaded: &Loaded, look: &Look, engine: &Engine<'_>, made: &Made) -> Result<(), Failure> {
@@ -240,6 +305,10 @@ impl RenderArgs {
                 "frames_ms": made.frames_ms,
                 "samples": made.samples,
                 "rays": self.rays(),
+                "stereo_method": self.stereo_method(made),
+                "stereo_quality": made.pairing.map(|pairing| pairing.quality.name()),
+                "reference_eye": made.pairing.map(|pairing| pairing.reference.name()),
+                "stereo_bytes": made.pair_bytes,
                 "skip": made.leaping.to_json(made.map_reads),
                 "gradient_map": made.gradient_map.map(GradientMapSize::to_json),
                 "white": made.white,
@@ -248,8 +317,13 @@ impl RenderArgs {
                 "warnings": warnings,
             }));
         }
+        let stereo = match (&made.pairing, self.stereo_method(made)) {
+            (Some(pairing), Some(method)) => format!(" by {method} ({})", pairing.quality.name()),
+            (None, Some(method)) => format!(" by {method}"),
+            (_, None) => String::new(),
+        };
         eprintln!(
-            "{}×{}×{} → {}x{} {} on {} ({}): {frame_ms:.1} ms, {:.1} M samples, {} → {}",
+            "{}×{}×{} → {}x{} {}{stereo} on {} ({}): {frame_ms:.1} ms, {:.1} M samples, {} → {}",
             dims[0],
             dims[1],
             dims[2],

@@ -199,6 +199,85 @@ fn stereo_layouts_have_their_sizes_and_sides() {
 }
 
 #[test]
+fn a_wobble_shows_the_left_eye_then_the_right_one() {
+    use image::AnimationDecoder as _;
+    let bench = Bench::new();
+    let parallel = ["--iso", "0.5", "--eye-distance", "0.2"];
+    bench.render("w.gif", &[&["--stereo", "wobble"], &parallel[..]].concat());
+    bench.render("side.png", &[&["--stereo", "side-by-side"], &parallel[..]].concat());
+    let side = image::open(bench.path("side.png")).unwrap().into_rgb8();
+    let file = std::io::BufReader::new(std::fs::File::open(bench.path("w.gif")).unwrap());
+    let frames = image::codecs::gif::GifDecoder::new(file).unwrap().into_frames().collect_frames().unwrap();
+    assert_eq!(frames.len(), 2);
+    for (eye, frame) in frames.iter().enumerate() {
+        assert_eq!(frame.buffer().dimensions(), (32, 24));
+        for (x, y, pixel) in frame.buffer().enumerate_pixels() {
+            let own = side.get_pixel(x + 32 * eye as u32, y).0;
+            let difference = (0..3).map(|c| own[c].abs_diff(pixel.0[c])).max().unwrap();
+            assert!(difference <= 8, "eye {eye}: {own:?} is {:?}", pixel.0);
+        }
+    }
+    bench.render("t.gif", &["--stereo", "wobble", "--turntable", "2", "--iso", "0.5"]);
+    assert_eq!(bench.files(), ["side.png", "sphere.nrrd", "t_0000.gif", "t_0001.gif", "w.gif"]);
+}
+
+#[test]
+fn what_one_cast_cannot_make_two_casts_do() {
+    let bench = Bench::new();
+    let pair = ["--stereo", "side-by-side", "--stereo-method", "strips", "--json"];
+    let run = bench.render("cpu.png", &pair);
+    assert!(run.stderr.contains("note: ") && run.stderr.contains("CPU renderer"), "{}", run.stderr);
+    assert_eq!(run.json()["stereo_method"], "two-pass");
+    let auto = bench.render("auto.png", &["--stereo", "side-by-side", "--json"]);
+    assert!(auto.stderr.is_empty(), "{}", auto.stderr);
+    let same = bench.run(&["compare", "cpu.png", "auto.png", "--json"]).json();
+    assert_eq!(same["max_abs"], 0.0);
+}
+
+#[test]
+fn one_cast_makes_both_eyes_on_the_gpu() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let render = |output: &str, flags: &[&str]| {
+        let base = ["render", "sphere.nrrd", "-o", output, "--size", "64x48", "--stereo", "top-bottom"];
+        let look = ["--tf", "ramp:0.2..1", "--convergence", "1.7", "--json"];
+        let run = bench.run(&[&base[..], &look, flags].concat());
+        assert_eq!(run.code, 0, "{flags:?}: {}", run.stderr);
+        run
+    };
+    let two_pass = render("two.png", &["--backend", "gpu", "--stereo-method", "two-pass"]).json();
+    assert_eq!(two_pass["stereo_method"], "two-pass");
+    for (eye, half) in [("left", 0), ("right", 48)] {
+        // Asked for by name, a pair of one cast is made on a GPU, software or not.
+        let one = render("one.png", &["--stereo-method", "strips", "--reference-eye", eye]).json();
+        assert_eq!((&one["backend"], &one["stereo_method"]), (&"gpu".into(), &"strips".into()), "{one}");
+        assert_eq!((&one["stereo_quality"], &one["reference_eye"]), (&"fast".into(), &eye.into()));
+        assert!(one["stereo_bytes"].as_u64().unwrap() > 0, "{one}");
+        let compared = bench.run(&["compare", "two.png", "one.png", "--json"]).json();
+        assert!(compared["dssim"].as_f64().unwrap() <= 0.01, "{compared}");
+        let [two, one] =
+            ["two.png", "one.png"].map(|name| image::open(bench.path(name)).unwrap().into_rgb8());
+        for (a, b) in two.rows().zip(one.rows()).skip(half).take(48) {
+            assert!(a.zip(b).all(|(a, b)| (0..3).all(|c| a.0[c].abs_diff(b.0[c]) <= 1)), "{eye}");
+        }
+    }
+    let same_eyes = render("zero.png", &["--stereo-method", "strips", "--eye-distance", "0"]).json();
+    assert_eq!(same_eyes["stereo_method"], "strips");
+    let mip = ["--backend", "gpu", "--mode", "mip"];
+    let silent = render("mip.png", &mip);
+    assert!(
+        !silent.stderr.contains("note: ") && silent.json()["stereo_method"] == "two-pass",
+        "{}",
+        silent.stderr
+    );
+    let noted = render("mip.png", &[&mip[..], &["--stereo-method", "strips"]].concat());
+    assert!(noted.stderr.contains("note: strips cannot make this pair"), "{}", noted.stderr);
+    assert_eq!(noted.json()["stereo_method"], "two-pass");
+}
+
+#[test]
 fn a_turntable_is_a_numbered_sequence() {
     let bench = Bench::new();
     let run = bench.render("t.png", &["--turntable", "4", "--iso", "0.5", "--distance", "1.5", "--json"]);

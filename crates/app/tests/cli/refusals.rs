@@ -57,6 +57,9 @@ fn impossible_values_name_their_flag_and_range() {
         (&["--block-size", "17"], "from 2 to 16"),
         (&["--block-size", "-4"], "--block-size"),
         (&["--gradient-map", "12"], "--gradient-map"),
+        (&["--stereo-method", "layers-of-cake"], "two-pass"),
+        (&["--stereo-quality", "perfect"], "fast"),
+        (&["--reference-eye", "third"], "left"),
         (&["--show", "depth"], "samples"),
         (&["--show", "samples:0"], "above 0"),
         (&["--no-such-flag"], "--no-such-flag"),
@@ -74,6 +77,12 @@ fn contradictions_are_refused() {
     refuses(&bench, &["--mode", "mip", "--preintegrated"], "--preintegrated needs");
     refuses(&bench, &["--preintegrated", "--tf", "ramp:0..1,0..1"], "one dimension");
     refuses(&bench, &["--orthographic", "1", "--stereo", "anaglyph"], "--stereo needs a perspective");
+    refuses(&bench, &["--stereo-method", "two-pass"], "--stereo-method needs --stereo side-by-side");
+    refuses(&bench, &["--stereo-quality", "fast", "--stereo", "left"], "--stereo-quality needs --stereo");
+    refuses(&bench, &["--reference-eye", "right", "--stereo", "right"], "--reference-eye needs --stereo");
+    let heat_map = ["--show", "samples", "--stereo", "anaglyph", "--stereo-method", "strips"];
+    refuses(&bench, &heat_map, "two-pass");
+    refuses(&bench, &["--stereo", "wobble"], ".gif");
     refuses(&bench, &["--orthographic", "1", "--fov", "1"], "--fov");
     refuses(&bench, &["--turntable", "2", "--frames", "2"], "--frames");
     refuses(&bench, &["--raw-size", "4x4x4"], "--raw-type");
@@ -112,7 +121,11 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     std::fs::create_dir(bench.path("folder.png")).unwrap();
     std::fs::write(bench.path("file"), []).unwrap();
     let before = bench.files();
-    for (output, says) in [("no/such/x.png", "no/such"), ("x.jpg", ".png"), ("folder.png", "folder.png")] {
+    let wobble = bench.try_render("x.gif", &["--stereo", "wobble", "--bits", "16"]);
+    assert!(wobble.code == 2 && wobble.stderr.contains("--bits 16"), "{}", wobble.stderr);
+    for (output, says) in
+        [("x.gif", ".png"), ("no/such/x.png", "no/such"), ("x.jpg", ".png"), ("folder.png", "folder.png")]
+    {
         let run = bench.try_render(output, &[]);
         assert_eq!(run.code, 2, "{output}: {}", run.stderr);
         assert!(run.stderr.contains(says), "{output}: {}", run.stderr);

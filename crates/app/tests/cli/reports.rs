@@ -23,10 +23,14 @@ fn render_reports_one_object() {
         "outputs",
         "picture_size",
         "rays",
+        "reference_eye",
         "samples",
         "shading",
         "size",
         "skip",
+        "stereo_bytes",
+        "stereo_method",
+        "stereo_quality",
         "tf",
         "upload_ms",
         "warnings",
@@ -43,6 +47,9 @@ fn render_reports_one_object() {
     assert_eq!(json["picture_size"], serde_json::json!([64, 24]));
     assert_eq!(json["rays"], 2 * 32 * 24);
     assert_eq!(json["frames_ms"].as_array().unwrap().len(), 3);
+    assert_eq!(json["stereo_method"], "two-pass");
+    assert!(json["stereo_quality"].is_null() && json["stereo_bytes"].is_null());
+    assert!(bench.render("mono.png", &["--json"]).json()["stereo_method"].is_null());
     assert!(json["samples"].as_u64().unwrap() > 0);
     assert_eq!(json["outputs"], serde_json::json!(["a.png"]));
     assert_eq!(
