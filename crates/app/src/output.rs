@@ -36,8 +36,21 @@ pub(crate) fn check_writable(path: &Path, extension: &str) -> Result<(), Failure
     check_folder(folder_of(path))
 }
 
+/// Makes a folder if it is missing, and refuses one that no file can be made in.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        Failure::input(format!("{}: cannot make this folder ({error})", folder.display()))
+    })?;
+    check_folder(folder)
+}
+
+/// The path of a file in a folder, with what is no letter, digit, `-`, `_` or `.` in its name replaced.
+pub(crate) fn file_in(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name.replace(|c: char| !c.is_alphanumeric() && !"-_.".contains(c), "_"))
+}
+
 /// Refuses a folder that no file can be made in.
-pub(crate) fn check_folder(folder: &Path) -> Result<(), Failure> {
+fn check_folder(folder: &Path) -> Result<(), Failure> {
     let probe = tempfile::Builder::new().prefix(".wheatstone-").suffix(".part").tempfile_in(folder);
     probe.map(drop).map_err(|error| {
         Failure::input(format!("{}: cannot create a file here ({})", folder.display(), error.kind()))

@@ -9,8 +9,18 @@ use wheatstone_io::write_atomically;
 const SIZE: (u32, u32) = (640, 420);
 
 /// Colours that all eyes tell apart (Okabe and Ito 2008).
-const COLORS: [RGBColor; 4] =
-    [RGBColor(213, 94, 0), RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(90, 90, 90)];
+const COLORS: [RGBColor; 7] = [
+    RGBColor(213, 94, 0),
+    RGBColor(0, 114, 178),
+    RGBColor(0, 158, 115),
+    RGBColor(90, 90, 90),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+];
+
+/// Most numbers at the horizontal axis.
+const MOST_TICKS: usize = 9;
 
 /// Names of a chart and its axes.
 pub(crate) struct Labels<'a> {
@@ -25,10 +35,10 @@ pub(crate) struct Line {
     pub(crate) points: Vec<(f64, f64)>,
 }
 
-/// Draws lines over even axes from 0 up.
+/// Draws lines over even axes; the vertical one has 0 in it.
 pub(crate) fn even_chart(path: &Path, labels: &Labels<'_>, lines: &[Line]) -> Result<(), Failure> {
-    let (_, highest) = span(lines, |point| point.1);
-    write_chart(path, labels, lines, 0.0..1.1 * highest)
+    let (lowest, highest) = span(lines, |point| point.1);
+    write_chart(path, labels, lines, 1.1 * lowest.min(0.0)..1.1 * highest.max(f64::EPSILON))
 }
 
 /// Draws lines over a logarithmic vertical axis, with room for their names below.
@@ -68,7 +78,7 @@ where
         .x_label_area_size(40)
         .y_label_area_size(60)
         .build_cartesian_2d(left - 0.2..right + 0.2, y)?;
-    let ticks = (right - left) as usize + 1;
+    let ticks = ((right - left) as usize + 1).min(MOST_TICKS);
     chart
         .configure_mesh()
         .x_desc(labels.x)

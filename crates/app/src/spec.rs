@@ -3,6 +3,7 @@
 use glam::DVec3;
 use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
+use wheatstone_core::cast::DIRECTIONAL_STEPS;
 use wheatstone_core::scene::{ClipPlane, MAX_DIRECTIONS, Shading};
 use wheatstone_core::skip::BlockSize;
 use wheatstone_core::volume::VoxelType;
@@ -118,6 +119,20 @@ pub(crate) fn shading(text: &str) -> Result<Shading, String> {
                     "must be none, phong, shadow, ambient or directional:D with D from 0 to {MAX_DIRECTIONS}"
                 )
             }),
+    }
+}
+
+/// Directional shading by its samples, four for each direction; 0 is none.
+pub(crate) fn shading_of_samples(text: &str) -> Result<Shading, String> {
+    match text.parse() {
+        Ok(0) => Ok(Shading::None),
+        Ok(samples) if samples % DIRECTIONAL_STEPS == 0 && samples / DIRECTIONAL_STEPS <= MAX_DIRECTIONS => {
+            Ok(Shading::Directional { directions: samples / DIRECTIONAL_STEPS })
+        }
+        _ => Err(format!(
+            "must be a multiple of {DIRECTIONAL_STEPS} from 0 to {}",
+            DIRECTIONAL_STEPS * MAX_DIRECTIONS
+        )),
     }
 }
 
@@ -266,6 +281,9 @@ mod tests {
         for text in ["none", "phong", "shadow", "ambient", "directional:64"] {
             assert_eq!(shading_name(shading(text).unwrap()), text);
         }
+        assert_eq!(shading_of_samples("0"), Ok(Shading::None));
+        assert_eq!(shading_of_samples("16"), Ok(Shading::Directional { directions: 4 }));
+        assert!(shading_of_samples("6").is_err() && shading_of_samples("260").is_err());
         assert!(shading("directional:65").is_err() && shading("gouraud").is_err());
         assert_eq!(color("#ff0000"), Ok([1.0, 0.0, 0.0]));
         assert!(color("ff00").is_err() && color("+f0000").is_err());

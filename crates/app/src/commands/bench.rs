@@ -1,21 +1,28 @@
 //! `bench`: what its commands share.
 
-use super::{bench_cast, bench_skip};
+use super::{bench_cast, bench_skip, bench_stereo};
+use crate::backend::Engine;
 use crate::failure::Failure;
 use crate::progress::Bar;
+use crate::spec;
 use crate::transfer_spec::TransferSpec;
 use crate::volume_args::print_warnings;
 use clap::{Args, Subcommand};
+use serde_json::{Value, json};
+use std::fmt;
 use std::path::Path;
+use wheatstone_core::phantom::Phantom;
 use wheatstone_core::transfer::BenchmarkRamp;
 use wheatstone_core::view::{Frustum, Orbit, Projection, View};
+use wheatstone_core::volume::Volume;
 use wheatstone_io::{Loaded, read_volume};
 
 /// Measure speed.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     wheatstone bench cast bonsai.nii.gz --up A --json\n  \
-    wheatstone bench skip beetle:256 --frames 6 --plot plots")]
+    wheatstone bench skip beetle:256 --frames 6 --plot plots\n  \
+    wheatstone bench stereo bonsai.nii.gz box:256 --up A --plot plots")]
 pub(crate) struct BenchArgs {
     #[command(subcommand)]
     what: BenchCommand,
@@ -25,6 +32,7 @@ pub(crate) struct BenchArgs {
 enum BenchCommand {
     Cast(bench_cast::CastArgs),
     Skip(bench_skip::SkipBenchArgs),
+    Stereo(Box<bench_stereo::StereoBenchArgs>),
 }
 
 /// Runs the command.
@@ -32,6 +40,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     match &args.what {
         BenchCommand::Cast(args) => bench_cast::run(args),
         BenchCommand::Skip(args) => bench_skip::run(args),
+        BenchCommand::Stereo(args) => bench_stereo::run(args),
     }
 }
 
@@ -43,6 +52,61 @@ pub(super) fn load(file: &Path) -> Result<Loaded, Failure> {
     };
     print_warnings(file, &loaded);
     Ok(loaded)
+}
+
+/// A volume by its names.
+pub(super) struct Opened {
+    pub(super) volume: Volume,
+    /// What rows call it: the size tells phantoms apart.
+    pub(super) name: String,
+    /// The benchmark volume that it may be.
+    pub(super) benchmark: String,
+}
+
+/// A phantom by name and size, or a file.
+pub(super) fn open(described: &str) -> Result<Opened, Failure> {
+    let phantom =
+        described.split_once(':').and_then(|(name, size)| Some((name.parse::<Phantom>().ok()?, size)));
+    let Some((phantom, size)) = phantom else {
+        let path = Path::new(described);
+        let name = name_of(path);
+        return Ok(Opened { volume: load(path)?.volume, benchmark: name.clone(), name });
+    };
+    let dims =
+        spec::phantom_dims(size).map_err(|error| Failure::input(format!("{described}: size {error}")))?;
+    let _spinner = Bar::spinner(format!("sampling {described}"));
+    Ok(Opened {
+        volume: phantom.volume(dims).map_err(Failure::input)?,
+        name: described.to_owned(),
+        benchmark: phantom.name().to_owned(),
+    })
+}
+
+/// What was measured on.
+pub(super) struct Device {
+    backend: &'static str,
+    name: String,
+    driver: String,
+}
+
+impl Device {
+    pub(super) fn of(engine: &Engine<'_>) -> Self {
+        Self { backend: engine.backend_name(), name: engine.device_name(), driver: engine.driver_name() }
+    }
+
+    /// One object of a report.
+    pub(super) fn to_json(&self) -> Value {
+        json!({
+            "backend": self.backend, "name": self.name, "driver": self.driver,
+            "cpu_threads": rayon::current_num_threads(),
+        })
+    }
+}
+
+impl fmt::Display for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {} ({})", self.backend, self.name, self.driver)
+    }
 }
 
 /// The name of a file up to its first dot.

@@ -1,10 +1,10 @@
 //! `bench skip`: what leaping over empty space saves, by the protocol of DM §4.1.
 
-use super::bench::{load, name_of, test_view};
+use super::bench::{Device, Opened, open, test_view};
 use crate::backend::{Engine, Shot, median, milliseconds, structure_name};
 use crate::camera::Up;
 use crate::failure::Failure;
-use crate::output::{check_folder, print, print_json};
+use crate::output::{file_in, make_folder, print, print_json};
 use crate::plot::{Labels, Line, even_chart, logarithmic_chart};
 use crate::progress::Bar;
 use crate::skipping::{GradientMapName, Skipping};
@@ -15,7 +15,6 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::GradientMap;
-use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Cast, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Placement, Settings};
 use wheatstone_core::skip::{BlockSize, Skip, SkipRequest, Structure, voxel_occupancy};
@@ -128,16 +127,10 @@ struct Row {
     bytes: u64,
 }
 
-/// Device, driver and backend.
-type Device = [String; 3];
-
 /// Runs the command.
 pub(crate) fn run(args: &SkipBenchArgs) -> Result<(), Failure> {
     if let Some(folder) = &args.plot {
-        std::fs::create_dir_all(folder).map_err(|error| {
-            Failure::input(format!("{}: cannot make this folder ({error})", folder.display()))
-        })?;
-        check_folder(folder)?;
+        make_folder(folder)?;
     }
     let defaults = ["present:256", "beetle:256", "snake:256"].map(str::to_owned);
     let volumes = if args.volumes.is_empty() { &defaults[..] } else { &args.volumes };
@@ -177,7 +170,7 @@ impl SkipBenchArgs {
             let least = self.least_reads(&volume, storage, &caster, &case.parameters)?;
             rows.extend(self.measure(&case, &mut engine, least)?);
         }
-        Ok([engine.backend_name().to_owned(), engine.device_name(), engine.driver_name()])
+        Ok(Device::of(&engine))
     }
 
     fn case<'a>(&self, name: &'a str, volume: &Volume, transfer: &TransferSpec) -> Result<Case<'a>, Failure> {
@@ -347,14 +340,8 @@ impl SkipBenchArgs {
     }
 
     fn to_json(&self, device: Option<&Device>, rows: &[Row]) -> Value {
-        let device = device.map(|[backend, name, driver]| {
-            json!({
-                "backend": backend, "name": name, "driver": driver,
-                "cpu_threads": rayon::current_num_threads(),
-            })
-        });
         json!({
-            "device": device,
+            "device": device.map(Device::to_json),
             "size": self.size,
             "frames": self.frames,
             "rows": rows.iter().map(Row::to_json).collect::<Vec<_>>(),
@@ -385,34 +372,6 @@ fn all_reads(casts: &[Cast]) -> f64 {
 
 fn median_of(frames: &[Frame], number: fn(&Frame) -> f64) -> f64 {
     median(&frames.iter().map(number).collect::<Vec<_>>())
-}
-
-/// A volume by its names.
-struct Opened {
-    volume: Volume,
-    /// What rows call it: the size tells phantoms apart.
-    name: String,
-    /// The benchmark volume that it may be.
-    benchmark: String,
-}
-
-/// A phantom by name and size, or a file.
-fn open(described: &str) -> Result<Opened, Failure> {
-    let phantom =
-        described.split_once(':').and_then(|(name, size)| Some((name.parse::<Phantom>().ok()?, size)));
-    let Some((phantom, size)) = phantom else {
-        let path = Path::new(described);
-        let name = name_of(path);
-        return Ok(Opened { volume: load(path)?.volume, benchmark: name.clone(), name });
-    };
-    let dims =
-        spec::phantom_dims(size).map_err(|error| Failure::input(format!("{described}: size {error}")))?;
-    let _spinner = Bar::spinner(format!("sampling {described}"));
-    Ok(Opened {
-        volume: phantom.volume(dims).map_err(Failure::input)?,
-        name: described.to_owned(),
-        benchmark: phantom.name().to_owned(),
-    })
 }
 
 impl Variant {
@@ -447,9 +406,7 @@ impl Row {
 
 fn to_table(device: Option<&Device>, rows: &[Row]) -> String {
     let mut lines = Vec::new();
-    if let Some([backend, name, driver]) = device {
-        lines.push(format!("{backend}: {name} ({driver})"));
-    }
+    lines.extend(device.map(Device::to_string));
     lines.push(format!(
         "{:<12} {:<12} {:<11} {:>5} {:>9} {:>9} {:>7} {:>11} {:>9} {:>7} {:>9} {:>9} {:>9}",
         "volume",
@@ -495,10 +452,7 @@ fn plot(folder: &Path, rows: &[Row]) -> Result<(), Failure> {
         let [Row { volume, transfer_name, .. }, ..] = rows else { continue };
         let of_structures =
             |y: fn(&Row) -> Option<f64>| STRUCTURES.map(|structure| line(rows, structure, "", y));
-        let path = |what: &str| {
-            let case = format!("{volume}-{transfer_name}-{what}.svg");
-            folder.join(case.replace(|c: char| !c.is_alphanumeric() && !"-_.".contains(c), "_"))
-        };
+        let path = |what: &str| file_in(folder, &format!("{volume}-{transfer_name}-{what}.svg"));
         let x = "side of a block (voxels)";
         even_chart(
             &path("speed-up"),

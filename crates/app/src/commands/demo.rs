@@ -4,7 +4,7 @@ use crate::backend::{BackendChoice, Engine, Job, milliseconds, note_fallback};
 use crate::camera::CameraArgs;
 use crate::failure::Failure;
 use crate::look::{Look, LookArgs};
-use crate::output::check_folder;
+use crate::output::make_folder;
 use crate::picture::Bits;
 use crate::progress::Bar;
 use crate::skipping::Skipping;
@@ -117,10 +117,7 @@ struct Taken {
 /// Runs the command.
 pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let folder = &args.output;
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::input(format!("{}: cannot make this folder ({error})", folder.display()))
-    })?;
-    check_folder(folder)?;
+    make_folder(folder)?;
     let loaded = read_bytes(Format::Nifti, BRAIN, None).context("the shipped volume")?;
     let volume = &loaded.volume;
     let plans = SHOTS.iter().map(|shot| plan(shot, args.size, volume)).collect::<Result<Vec<_>, _>>()?;

@@ -103,7 +103,13 @@ fn bad_files_are_refused() {
         ["empty.nrrd", "noise.nii", "short.nrrd", "huge_1048576x1048576x1_uint8.raw", "missing.nrrd", "."]
     {
         let render = ["render", file, "-o", "x.png"];
-        for args in [&["info", file][..], &render, &["bench", "cast", file], &["bench", "skip", file]] {
+        for args in [
+            &["info", file][..],
+            &render,
+            &["bench", "cast", file],
+            &["bench", "skip", file],
+            &["bench", "stereo", file],
+        ] {
             let run = bench.run(args);
             assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);
             let errors: Vec<&str> = run.stderr.lines().filter(|line| line.starts_with("error: ")).collect();
@@ -137,6 +143,11 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         &["phantom", "cube", "-o", "x.nrrd"],
         &["demo", "-o", "file"],
         &["bench", "skip", "beetle:8", "--plot", "file"],
+        &["bench", "stereo", "box:8", "--error-pictures", "file"],
+        &["bench", "stereo", "box:8", "--distance", "far"],
+        &["bench", "stereo", "box:8", "--shading-samples", "6"],
+        &["bench", "stereo", "box:8", "--methods", "two-pass"],
+        &["bench", "stereo"],
         &["bench", "skip", "beetle:0"],
         &["bench", "skip", "beetle:8", "--block-sizes", "4,99"],
     ] {

@@ -286,6 +286,73 @@ fn bench_skip_lists_every_structure_and_draws_charts() {
 }
 
 #[test]
+fn bench_stereo_lists_every_way_and_draws_charts() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let small = ["bench", "stereo", "sphere.nrrd", "--size", "48x48", "--frames", "2", "--shadings", "none"];
+    let look = ["--methods", "strips", "--qualities", "fast", "--tf", "ramp:0.2..1"];
+    let folders = ["--plot", "plots", "--error-pictures", "errors", "--layers-sweep=24", "--json"];
+    let run = bench.run(&[&small[..], &look, &folders].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let json = run.json();
+    assert_eq!(keys(&json), ["device", "frames", "layers", "rows", "size"]);
+    assert_eq!(keys(&json["device"]), ["backend", "cpu_threads", "driver", "name"]);
+    let rows = json["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2, "{}", run.stderr);
+    let row_keys = [
+        "bytes",
+        "clear_ms",
+        "composite_ms",
+        "distance_m",
+        "dssim_covered_mean",
+        "dssim_covered_worst",
+        "dssim_mean",
+        "dssim_worst",
+        "method",
+        "quality",
+        "reference_difference",
+        "shading",
+        "shading_samples",
+        "t_left_ms",
+        "t_pair_ms",
+        "t_right_ms",
+        "v",
+        "volume",
+    ];
+    for row in rows {
+        assert_eq!(keys(row), row_keys);
+        let number = |key: &str| row[key].as_f64().unwrap();
+        assert!(number("t_pair_ms") > 0.0 && number("v").is_finite() && number("bytes") > 0.0, "{row}");
+        assert!(number("reference_difference") <= 1.0 / 255.0, "{row}");
+        assert!((0.0..0.02).contains(&number("dssim_mean")), "{row}");
+        assert!(number("dssim_worst") >= number("dssim_mean"), "{row}");
+        assert!(number("dssim_covered_mean") >= number("dssim_mean"), "{row}");
+    }
+    // Fewer pixels keep to 32 layers from nearer.
+    assert!(rows[0]["distance_m"].as_f64().unwrap() < 0.1 && rows[1]["distance_m"] == 1.2);
+    let layers = json["layers"].as_array().unwrap();
+    assert_eq!(
+        layers.iter().map(|row| row["layers"].as_u64().unwrap()).collect::<Vec<_>>(),
+        [16, 24, 32, 40, 48, 56, 64]
+    );
+    assert!(layers.iter().all(|row| row["side"] == 24 && row["composite_ms"].as_f64().unwrap() > 0.0));
+    for chart in ["sphere-1.20-speed-up.svg", "sphere-strips_fast-layers.svg"] {
+        let svg = std::fs::read_to_string(bench.path("plots").join(chart)).unwrap();
+        assert!(svg.contains("</svg>"), "{chart}");
+    }
+    for what in ["derived", "own", "error"] {
+        let name = format!("errors/sphere-1.20-none-strips-fast-{what}.png");
+        assert_eq!(bench.png(&name).0, 48);
+        let picture = image::open(bench.path(&name)).unwrap().into_rgb8();
+        assert!(picture.pixels().any(|pixel| pixel.0 != [0; 3]), "{what}");
+    }
+    let table = bench.run(&[&small[..], &look, &["--distance", "1"]].concat()).stdout;
+    assert_eq!(table.lines().filter(|line| line.starts_with("sphere ")).count(), 1, "{table}");
+}
+
+#[test]
 fn bench_cast_skips_if_asked() {
     let bench = Bench::new();
     let samples = |flags: &[&str]| {
@@ -354,6 +421,7 @@ fn every_command_has_help_with_an_example() {
         &["bench"],
         &["bench", "cast"],
         &["bench", "skip"],
+        &["bench", "stereo"],
     ] {
         let run = bench.run(&[command, &["--help"]].concat());
         assert_eq!(run.code, 0);
@@ -375,6 +443,7 @@ fn every_flag_is_in_the_reference() {
         &["demo"],
         &["bench", "cast"],
         &["bench", "skip"],
+        &["bench", "stereo"],
     ] {
         let help = bench.run(&[command, &["--help"]].concat()).stdout;
         let flags = help
