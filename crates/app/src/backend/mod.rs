@@ -86,6 +86,9 @@ pub(crate) enum NoPair {
 impl From<PairError> for NoPair {
     fn from(error: PairError) -> Self {
         match error {
+            PairError::Gpu(GpuError::OutOfMemory { reason } | GpuError::Refused { reason }) => {
+                Self::Refused(reason)
+            }
             PairError::Gpu(error) => Self::Gpu(error),
             other => Self::Refused(other.to_string()),
         }

@@ -19,7 +19,7 @@ use crate::spec;
 use crate::transfer_spec::{self, TransferSpec};
 use clap::{Args, ValueEnum};
 use eyes::{Distance, Eyes};
-use layers::LayersRow;
+use layers::{LayersRow, Sweep};
 use row::Row;
 use serde_json::json;
 use std::path::PathBuf;
@@ -196,14 +196,8 @@ impl StereoBenchArgs {
             let shot = engine.prepare(&parameters(Shading::None), skipping)?;
             let bar = Bar::new("layers", self.layers_sweep.len() as u64 * layers::counts().count() as u64);
             for &side in &self.layers_sweep {
-                let eyes = Eyes { size: [side; 2] };
-                measured.layers.extend(layers::measure(
-                    &mut engine,
-                    shot,
-                    (&name, eyes, self.frames),
-                    &self.pairings(),
-                    &bar,
-                )?);
+                let sweep = Sweep { volume: &name, eyes: Eyes { size: [side; 2] }, frames: self.frames };
+                measured.layers.extend(layers::measure(&mut engine, shot, &sweep, &self.pairings(), &bar)?);
             }
         }
         measured.device = Some(Device::of(&engine));

@@ -7,6 +7,14 @@ use crate::pairing::Pairing;
 use crate::progress::Bar;
 use serde_json::{Value, json};
 
+/// What is made.
+pub(super) struct Sweep<'a> {
+    pub(super) volume: &'a str,
+    pub(super) eyes: Eyes,
+    /// How often each pair is made, after one that does not count.
+    pub(super) frames: u32,
+}
+
 /// One line of the table.
 pub(super) struct LayersRow {
     pub(super) volume: String,
@@ -25,28 +33,29 @@ pub(super) fn counts() -> impl Iterator<Item = u32> {
     (16..=64).step_by(8)
 }
 
-/// Makes a pair by each pairing from the distances at which a volume takes each number of layers, so many times after one that
-/// does not count. Pairings that are refused have no row.
+/// Makes pairs by each pairing from the distances at which a volume takes each number of layers. Pairings that are refused
+/// have no row.
 pub(super) fn measure(
     engine: &mut Engine<'_>,
     shot: Shot,
-    (volume, eyes, frames): (&str, Eyes, u32),
+    sweep: &Sweep<'_>,
     pairings: &[Pairing],
     bar: &Bar,
 ) -> Result<Vec<LayersRow>, Failure> {
+    let Sweep { volume, eyes, frames } = sweep;
     let mut rows = Vec::new();
     for layers in counts() {
         let distance_m = eyes.nearest_distance_m(layers)?;
         let views = eyes.views(distance_m, 0.0)?;
         for &pairing in pairings {
             let reports =
-                (0..=frames).map(|_| engine.cast_pair(shot, views, &pairing).map(|pair| pair.report));
+                (0..=*frames).map(|_| engine.cast_pair(shot, views, &pairing).map(|pair| pair.report));
             match reports.collect::<Result<Vec<_>, _>>() {
                 Ok(reports) => {
                     let timed = &reports[1..];
                     let median_ms = |ms: Vec<f64>| median(&ms);
                     rows.push(LayersRow {
-                        volume: volume.to_owned(),
+                        volume: (*volume).to_owned(),
                         pairing,
                         side: eyes.size[0],
                         layers,

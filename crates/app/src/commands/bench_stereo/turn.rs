@@ -80,7 +80,8 @@ impl Tally {
         &mut self,
         engine: &mut Engine<'_>,
         shot: Shot,
-        (name, views): (&str, [View; 2]),
+        name: &str,
+        views: [View; 2],
     ) -> Result<Option<[Image; 2]>, Failure> {
         if self.is_refused {
             return Ok(None);
@@ -148,7 +149,7 @@ pub(super) fn measure(
         engine.cast(shot, &[view])?;
     }
     for tally in &mut tallies {
-        tally.cast(engine, shot, (turn.name, first))?;
+        tally.cast(engine, shot, turn.name, first)?;
         *tally = Tally { is_refused: tally.is_refused, ..Tally::new(tally.pairing) };
     }
     bar.advance();
@@ -162,7 +163,7 @@ pub(super) fn measure(
                 mono_ms[way].push(milliseconds(engine.cast(shot, &[views[way]])?));
                 own[way] = engine.read()?.pop().map(|cast| cast.image);
             } else {
-                pairs[way - 2] = tallies[way - 2].cast(engine, shot, (turn.name, views))?;
+                pairs[way - 2] = tallies[way - 2].cast(engine, shot, turn.name, views)?;
             }
         }
         let [Some(left), Some(right)] = &own else { continue };
