@@ -26,6 +26,6 @@ pub use gpu::{AdapterDescription, Gpu, GpuError};
 pub use gradient_map::GpuGradientMap;
 pub use leap::Leap;
 pub use renderer::{Prepared, Renderer, Sources};
-pub use stereo::{Form, PairError, PairMethod, PairReport, Quality};
+pub use stereo::{Form, LayerFormat, PairError, PairMethod, PairReport, Quality};
 pub use target::Target;
 pub use volume::{GpuVolume, TexelFormat};

@@ -6,13 +6,15 @@ use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
-use crate::stereo::StripPass;
+use crate::stereo::{LayerFormat, LayerPass, StripPass};
 use crate::target::Target;
 use crate::tile_pass::{self, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
 use glam::DVec3;
 use half::f16;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::ops::Range;
 use std::time::Instant;
 use wgpu::util::DeviceExt as _;
@@ -31,6 +33,7 @@ pub struct Renderer {
     casts: VariantPipelines,
     tile_pass: TilePass,
     strip_pass: Option<StripPass>,
+    layer_passes: HashMap<LayerFormat, LayerPass>,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
@@ -101,7 +104,17 @@ impl Renderer {
             .create_view(&wgpu::TextureViewDescriptor::default());
         let unused = [(); 2].map(|()| storage(gpu, "unused", RAY_STATE_BYTES));
         gpu.check()?;
-        Ok(Self { groups, casts, tile_pass, strip_pass: None, sampler, unused, no_map, pacer: Pacer::new() })
+        Ok(Self {
+            groups,
+            casts,
+            tile_pass,
+            strip_pass: None,
+            layer_passes: HashMap::new(),
+            sampler,
+            unused,
+            no_map,
+            pacer: Pacer::new(),
+        })
     }
 
     /// Prepares a volume to be cast with some parameters.
@@ -219,6 +232,14 @@ impl Renderer {
         Ok(self.strip_pass.insert(made))
     }
 
+    /// Layers of a format, made when first asked for.
+    pub(crate) fn layers(&mut self, gpu: &Gpu, format: LayerFormat) -> Result<&mut LayerPass, GpuError> {
+        Ok(match self.layer_passes.entry(format) {
+            Entry::Occupied(made) => made.into_mut(),
+            Entry::Vacant(none) => none.insert(LayerPass::new(&gpu.device, &self.groups, format)?),
+        })
+    }
+
     /// The bindings of a target, of the rays that are kept and of the tiles that are listed.
     pub(crate) fn target_group(
         &self,
@@ -307,6 +328,7 @@ impl Renderer {
 }
 
 /// Squares of `BAND_ROWS` pixels that a body can cover.
+#[derive(Debug, Clone)]
 pub(crate) struct Squares {
     /// From the left.
     pub(crate) columns: Range<u32>,

@@ -1,11 +1,12 @@
 import package::lib::classify::{VALUE_OFFSET, may_be_visible};
-import package::lib::composite::{FIRST_HIT_ALPHA, SEARCHES, STRETCH, blend, start_ray};
+import package::lib::composite::{SEARCHES, STRETCH, blend, start_ray};
 import package::lib::cast_parameters::{parameters};
 import package::lib::pair::{pair};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
-import package::lib::ray_state::{NOTHING_HIT, RayState};
+import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, RayState};
 import package::lib::segment_sink::{SegmentPlace, put_segment};
 import package::lib::skip::{next_run, start_walk};
+import package::lib::slabs::{end_of_slab, slab_at};
 import package::lib::volume::{value_at};
 
 // Rays of the reference view cut into segments, one for each slab of depth: all samples of a slab land on the same derived
@@ -22,28 +23,13 @@ fn append(before: RayState, segment: RayState) -> RayState {
     return state;
 }
 
-// The slab of a depth.
-fn slab_at(depth_m: f32) -> i32 {
-    return clamp(i32(ceil(pair.k / depth_m - pair.offset)), pair.furthest, pair.nearest);
-}
-
-// First sample behind a slab.
-fn end_of_slab(ray: Ray, slab: i32) -> u32 {
-    let over = f32(slab) - 1.0 + pair.offset;
-    if over <= 0.0 || slab == pair.furthest {
-        return ray.sample_count;
-    }
-    let samples = ceil((pair.k / over - ray.first_depth_m) / ray.step_depth_m);
-    return u32(clamp(samples, 0.0, f32(ray.sample_count)));
-}
-
 // Casts the ray of a column and hands each slab's segment over; `place` is what the sink knows the ray by.
 fn cast_segments(ray: Ray, place: SegmentPlace) -> RayState {
     let walk = start_walk(ray.first, ray.step);
     let end = ray.sample_count;
     var state = start_ray(ray);
     var segment = state;
-    var slab = pair.nearest;
+    var slab = pair.nearest + 1;
     var slab_end = 0u;
     var run_end = 0u;
     var i = 0u;
@@ -65,7 +51,8 @@ fn cast_segments(ray: Ray, place: SegmentPlace) -> RayState {
                 segment.transmittance = 1.0;
             }
             segment.depth_m = ray_depth_m(ray, f32(i));
-            slab = slab_at(segment.depth_m);
+            // A ray has one segment in each slab, however the bounds are rounded.
+            slab = min(slab_at(segment.depth_m), slab - 1);
             slab_end = max(end_of_slab(ray, slab), i + 1u);
         }
         let begin = i;

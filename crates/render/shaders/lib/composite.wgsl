@@ -1,7 +1,7 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classify::{CLASSIFIER_IS_DEAR, VALUE_OFFSET, classify};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
-import package::lib::ray_state::{NOTHING_HIT, Pixel, RayState, new_ray_state, pixel_of};
+import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, Pixel, RayState, new_ray_state, pixel_of};
 import package::lib::shade::{SHADING_IS_DEAR, shade};
 import package::lib::skip::{RUNS_ARE_DENSE};
 import package::lib::volume::{value_at};
@@ -12,9 +12,6 @@ const STRETCH: u32 = 16u;
 // Whether to search for the next visible sample before blending it: a driver that runs both sides of every branch
 // (software Vulkan) then blends no other. Not worth it where most are visible and blending is cheap.
 const SEARCHES = CLASSIFIER_IS_DEAR || SHADING_IS_DEAR || !RUNS_ARE_DENSE;
-
-// Accumulated opacity at which a ray has hit something: the first that an 8-bit picture shows.
-const FIRST_HIT_ALPHA: f32 = 1.0 / 255.0;
 
 // `scalar` holds the value of the sample before, where the classifier asks for it.
 fn start_ray(ray: Ray) -> RayState {

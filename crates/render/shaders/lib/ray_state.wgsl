@@ -19,6 +19,9 @@ struct RayState {
 // Depth where nothing was hit: the largest f32.
 const NOTHING_HIT: f32 = 3.4028234e38;
 
+// Accumulated opacity at which a ray has hit something: the first that an 8-bit picture shows.
+const FIRST_HIT_ALPHA: f32 = 1.0 / 255.0;
+
 struct Pixel {
     // Premultiplied RGBA.
     color: vec4f,

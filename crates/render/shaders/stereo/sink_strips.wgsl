@@ -1,5 +1,4 @@
-import package::lib::composite::{FIRST_HIT_ALPHA};
-import package::lib::ray_state::{RayState};
+import package::lib::ray_state::{FIRST_HIT_ALPHA, RayState};
 import package::lib::strips::{partial_at, partial_depths_m, partials};
 
 // Segments go into the partial sums of their strip.

@@ -64,6 +64,7 @@ impl Capabilities {
         wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
             | wgpu::Features::FLOAT32_FILTERABLE
             | wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::CLEAR_TEXTURE
     }
 
     /// How large structures of empty-space skipping may be.

@@ -21,6 +21,20 @@ pub enum PairError {
         /// Most samples of a ray.
         samples: u32,
     },
+    /// More layers than the device holds.
+    #[error(
+        "{layers} layers for a stereo pair take {bytes} bytes; this device holds {most_layers} layers in {most_bytes} bytes"
+    )]
+    Layers {
+        /// Layers needed: slabs of depth that the volume is in.
+        layers: u32,
+        /// Bytes of all.
+        bytes: u64,
+        /// Most layers.
+        most_layers: u32,
+        /// Most bytes.
+        most_bytes: u64,
+    },
     /// The device.
     #[error(transparent)]
     Gpu(#[from] GpuError),

@@ -7,6 +7,17 @@ pub enum Form {
     /// A row of a strip of columns is cast ray after ray and composited on the way; strips are merged.
     #[default]
     Strips,
+    /// Segments are left in layers, one for each slab of depth, and composited when all are cast (SP).
+    Layers(LayerFormat),
+}
+
+/// How segments are held in layers: premultiplied RGBA.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LayerFormat {
+    /// 8 bits per channel: each segment is rounded to a level of 1/255.
+    Rgba8Unorm,
+    /// Half floats.
+    Rgba16Float,
 }
 
 /// How much is done for the derived picture.

@@ -1,11 +1,13 @@
 //! The second eye from the rays of the first.
 
 mod error;
+mod layers;
 mod method;
 mod pair;
 mod strips;
 
 pub use error::PairError;
-pub use method::{Form, PairMethod, Quality};
+pub(crate) use layers::LayerPass;
+pub use method::{Form, LayerFormat, PairMethod, Quality};
 pub use pair::PairReport;
 pub(crate) use strips::StripPass;

@@ -82,6 +82,7 @@ impl Renderer {
         };
         match method.form {
             Form::Strips => self.strips(gpu)?.render(&frame),
+            Form::Layers(format) => self.layers(gpu, format)?.render(&frame),
         }
     }
 
@@ -110,6 +111,9 @@ impl Renderer {
         if most_rays == 0 {
             return Err(PairError::LongRays { samples });
         }
+        // Rows correspond: nothing is derived where no ray of the reference eye is.
+        let [reference, derived] =
+            [epipolar.reference(), epipolar.derived()].map(|view| Squares::covered(view, &corners));
         Ok(Some(PairFrame {
             gpu,
             prepared,
@@ -117,7 +121,7 @@ impl Renderer {
             slabs,
             columns,
             most_rays,
-            covered: [epipolar.reference(), epipolar.derived()].map(|view| Squares::covered(view, &corners)),
+            covered: [reference.clone(), Squares { bands: reference.bands, ..derived }],
             targets: targets.map(|target| self.target_group(gpu, target, self.unused.each_ref())),
         }))
     }

@@ -12,5 +12,6 @@ mod scene;
 mod segments;
 mod skip;
 mod stereo;
+mod stereo_forms;
 mod tolerance;
 mod upload;

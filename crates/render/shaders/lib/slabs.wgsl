@@ -1,0 +1,19 @@
+import package::lib::pair::{pair};
+import package::lib::ray::{Ray};
+
+// Slabs of depth in which all samples of a ray move by the same number of columns.
+
+// The slab of a depth.
+fn slab_at(depth_m: f32) -> i32 {
+    return clamp(i32(ceil(pair.k / depth_m - pair.offset)), pair.furthest, pair.nearest);
+}
+
+// First sample behind a slab.
+fn end_of_slab(ray: Ray, slab: i32) -> u32 {
+    let over = f32(slab) - 1.0 + pair.offset;
+    if over <= 0.0 || slab == pair.furthest {
+        return ray.sample_count;
+    }
+    let samples = ceil((pair.k / over - ray.first_depth_m) / ray.step_depth_m);
+    return u32(clamp(samples, 0.0, f32(ray.sample_count)));
+}

@@ -1,0 +1,21 @@
+import package::lib::layers::{layer_of};
+import package::lib::layer_target::{layers};
+import package::lib::ray_state::{RayState};
+import package::lib::view::{view};
+
+// Segments go into the layer of their ray.
+
+struct SegmentPlace {
+    row: u32,
+    // Sweep column of the ray.
+    column: i32,
+}
+
+// Writes a segment at the derived column of its slab.
+fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
+    let column = place.column - slab;
+    if column >= 0 && column < i32(view.width) {
+        let color = vec4f(segment.color, 1.0 - segment.transmittance);
+        textureStore(layers, vec2i(column, i32(place.row)), layer_of(place.column), color);
+    }
+}

@@ -1,0 +1,179 @@
+//! Layers: the reference view cast ray by ray, the segments left in layers of the derived view that another pass composites.
+//!
+//! Single-pass stereo as published (SP Alg. 1–3). Of a derived pixel's depth only the slab is known: it is that of the
+//! middle of the slab's samples.
+
+use super::pair::{Eye, PairFrame, PairReport};
+use super::{LayerFormat, PairError};
+use crate::cast_pass::VariantPipelines;
+use crate::gpu::GpuError;
+use crate::groups::{GroupLayouts, bind, layout, uniform};
+use crate::pacer::BAND_ROWS;
+use crate::pipeline::{KernelFiles, build};
+use crate::uniforms::PairUniform;
+use wgpu::util::DeviceExt as _;
+
+impl LayerFormat {
+    fn texture_format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+            Self::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        }
+    }
+
+    fn bytes_per_pixel(self) -> u32 {
+        match self {
+            Self::Rgba8Unorm => 4,
+            Self::Rgba16Float => 8,
+        }
+    }
+
+    /// The files of the casting kernel's slots.
+    fn files(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Rgba8Unorm => &[
+                ("lib/segment_sink", "stereo/sink_layers"),
+                ("lib/layer_target", "stereo/layers_rgba8unorm"),
+            ],
+            Self::Rgba16Float => &[
+                ("lib/segment_sink", "stereo/sink_layers"),
+                ("lib/layer_target", "stereo/layers_rgba16float"),
+            ],
+        }
+    }
+}
+
+/// Pipelines for layers of a format, and the layers of the last pair.
+#[derive(Debug)]
+pub(crate) struct LayerPass {
+    format: LayerFormat,
+    cast_layout: wgpu::BindGroupLayout,
+    cast: VariantPipelines,
+    composite_layout: wgpu::BindGroupLayout,
+    composite: wgpu::ComputePipeline,
+    layers: Option<wgpu::Texture>,
+}
+
+impl LayerPass {
+    /// Builds the compositing pipeline; what the driver says against it comes with the next [`Gpu::check`].
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] for files that make no module.
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        groups: &GroupLayouts,
+        format: LayerFormat,
+    ) -> Result<Self, GpuError> {
+        let view_dimension = wgpu::TextureViewDimension::D2Array;
+        let written = wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: format.texture_format(),
+            view_dimension,
+        };
+        let read = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension,
+            multisampled: false,
+        };
+        let [cast_layout, composite_layout] =
+            [written, read].map(|texture| layout(device, "layers", &[uniform::<PairUniform>(), texture]));
+        let pipeline_layout = |own| groups.pipeline_layout(device, "layers", Some(own));
+        let files =
+            KernelFiles { root: "stereo/composite_layers", choices: &[], entry_point: "composite_layers" };
+        let composite = build(device, Some(&pipeline_layout(&composite_layout)), &files)?;
+        let cast = VariantPipelines::new(
+            pipeline_layout(&cast_layout),
+            "stereo/cast_layers",
+            "cast_layers",
+            format.files(),
+        );
+        Ok(Self { format, cast_layout, cast, composite_layout, composite, layers: None })
+    }
+
+    /// Makes a pair.
+    pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
+        let PairFrame { gpu, prepared, epipolar, slabs, columns, .. } = frame;
+        let bytes = slabs.layer_bytes(frame.size(), self.format.bytes_per_pixel());
+        let pipeline = self.cast.pipeline(gpu, prepared.variant)?;
+        let layers = self.layers(frame, bytes)?;
+        let clear = frame.run(|encoder| {
+            encoder.clear_texture(&layers, &wgpu::ImageSubresourceRange::default());
+        })?;
+
+        let pair = PairUniform::new(epipolar, *slabs, columns, 1);
+        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("layers"),
+            contents: bytemuck::bytes_of(&pair),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let view = layers.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let [cast_group, composite_group] = [&self.cast_layout, &self.composite_layout].map(|layout| {
+            let resources = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&view)];
+            bind(&gpu.device, layout, &resources)
+        });
+        let bindings = frame.bind(Eye::Reference);
+        let cast = frame.run(|encoder| {
+            let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&cast_group));
+            let [_, bands] = frame.squares(Eye::Reference);
+            pass.dispatch_workgroups(pair.count.div_ceil(BAND_ROWS), bands, 1);
+        })?;
+        let bindings = frame.bind(Eye::Derived);
+        let composite = frame.run(|encoder| {
+            let mut pass = bindings.begin_pass(encoder, &self.composite, Some(&composite_group));
+            let [squares_x, squares_y] = frame.squares(Eye::Derived);
+            pass.dispatch_workgroups(squares_x, squares_y, 1);
+        })?;
+        Ok(PairReport { bytes, clear, cast, composite })
+    }
+
+    /// Layers for a pair: those of the last pair if they are as many and as large.
+    fn layers(&mut self, frame: &PairFrame<'_>, bytes: u64) -> Result<wgpu::Texture, PairError> {
+        let PairFrame { gpu, slabs, .. } = frame;
+        let [width, height] = frame.size();
+        let most_layers = gpu.device.limits().max_texture_array_layers;
+        let most_bytes = gpu.capabilities().largest_texture;
+        if slabs.layers() > most_layers || bytes > most_bytes {
+            return Err(PairError::Layers { layers: slabs.layers(), bytes, most_layers, most_bytes });
+        }
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: slabs.layers() };
+        if let Some(layers) = self.layers.take().filter(|layers| layers.size() == size) {
+            return Ok(self.layers.insert(layers).clone());
+        }
+        let layers = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("layers"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.format.texture_format(),
+            // Not a render target: emptied by copies of zeros, on software Vulkan in half the time of render passes and a
+            // tenth of a kernel's.
+            usage: wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        gpu.check()?;
+        Ok(self.layers.insert(layers).clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pass_builds_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        for format in [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float] {
+            LayerPass::new(&device, &GroupLayouts::new(&device), format).unwrap();
+        }
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+}

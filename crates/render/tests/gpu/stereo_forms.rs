@@ -1,0 +1,241 @@
+//! Every form of a pair against the others and against the sequential order of compositing, on random volumes and rigs.
+
+use crate::device::on_device;
+use crate::scene::*;
+use glam::{DAffine3, DVec3};
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::reference::{Aids, Cast, Caster, RayEnd, Reprojection, Splat};
+use wheatstone_core::scene::{Mode, Settings};
+use wheatstone_core::skip::{BlockSize, Structure};
+use wheatstone_core::stereo::Epipolar;
+use wheatstone_core::view::{Projection, Rig, View};
+use wheatstone_core::volume::{Grid, Volume, Voxels};
+use wheatstone_render::skip::{SkipBuilder, SkipKernels};
+use wheatstone_render::{
+    Form, Gpu, GpuVolume, LayerFormat, Leap, PairError, PairMethod, Prepared, Renderer, Sources, Target,
+    TexelFormat,
+};
+
+/// Forms that do not round segments to 8 bits.
+const FORMS: [Form; 2] = [Form::Strips, Form::Layers(LayerFormat::Rgba16Float)];
+
+/// Layers of the cases: one, few, those of the papers, some that no strip, square or power of two divides, and more than a
+/// strip is wide.
+const LAYERS: [u32; 16] = [1, 2, 1, 3, 5, 12, 20, 33, 34, 47, 64, 65, 90, 128, 150, 200];
+
+/// Mean difference of channels: half floats, and a sample here and there on the other side of a slab's bound.
+const MEAN_DIFFERENCE: f64 = 2e-4;
+
+/// Difference of a channel that counts as none: two levels of an 8-bit picture.
+const SAME: f64 = 2.0 / 255.0;
+
+/// Share of channels that may differ by more.
+const SHARE_OF_OTHERS: f64 = 0.002;
+
+/// Numbers that look random, the same on every run (`SplitMix64`).
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ z >> 31
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn whole(&mut self, low: u32, high: u32) -> u32 {
+        self.between(low.into(), f64::from(high) + 1.0) as u32
+    }
+
+    fn vector(&mut self, low: f64, high: f64) -> DVec3 {
+        DVec3::from([(); 3].map(|()| self.between(low, high)))
+    }
+}
+
+/// A volume, how it is shown and a pair that sees it.
+struct Case {
+    volume: Volume,
+    parameters: CastParameters,
+    leaps: bool,
+    epipolar: Epipolar,
+}
+
+impl Case {
+    /// A random case of so many layers; its number tells what is on and what is off.
+    fn new(number: u64, layers: u32, mode: Mode) -> Self {
+        let is = |bit: u32| number >> bit & 1 == 1;
+        let mut random = Random(300 + number);
+        let volume = noise(&mut random);
+        let mut settings = Settings::new(volume.full_window(), transfer(random.between(0.2, 0.95) as f32));
+        settings.mode = mode;
+        settings.sampling_factor = random.between(1.0, 3.0) as f32;
+        settings.preintegrated = random.bits() & 1 == 1;
+        settings.early_termination = is(1).then_some(0.99);
+        if is(2) {
+            settings.clip.box_lo = random.vector(0.0, 0.3);
+            settings.clip.box_hi = random.vector(0.7, 1.0);
+        }
+        let parameters = CastParameters::new(&settings, &placement(&volume));
+        let epipolar = pair(&mut random, &parameters, layers, is(0));
+        let depths_m = epipolar.depths_m(&parameters.visible_corners_world()).unwrap();
+        assert_eq!(epipolar.slabs().between(depths_m.start, depths_m.end).layers(), layers);
+        Self { volume, parameters, leaps: is(3), epipolar }
+    }
+
+    /// Both eyes by each form, cast twice.
+    fn pairs(&self, gpu: &Gpu, renderer: &mut Renderer, forms: &[Form]) -> Vec<[[Cast; 2]; 2]> {
+        let uploaded = GpuVolume::upload_as(gpu, &self.volume, FORMAT, &mut |_, _| {}).unwrap();
+        let kernels = SkipKernels::new(gpu).unwrap();
+        let mut builder = SkipBuilder::new(gpu, &kernels, &uploaded, BlockSize::cube(3).unwrap()).unwrap();
+        let map = builder.map(gpu, &self.parameters, Structure::Anisotropic).unwrap();
+        let leap = if self.leaps { Leap::EmptyBlocks(&map) } else { Leap::Nothing };
+        let sources = Sources { leap, ..Sources::volume(&uploaded) };
+        let prepared = renderer.prepare(gpu, &sources, self.parameters.clone()).unwrap();
+        forms.iter().map(|&form| [(); 2].map(|()| self.pair(gpu, renderer, &prepared, form))).collect()
+    }
+
+    fn pair(&self, gpu: &Gpu, renderer: &mut Renderer, prepared: &Prepared, form: Form) -> [Cast; 2] {
+        let targets = [(); 2].map(|()| Target::new(gpu, self.epipolar.reference().size).unwrap());
+        let method = PairMethod { form, ..PairMethod::default() };
+        renderer.render_pair(gpu, prepared, &self.epipolar, method, targets.each_ref()).unwrap();
+        targets.map(|target| target.read(gpu).unwrap())
+    }
+
+    /// Both eyes in the sequential order.
+    fn truth(&self) -> [Cast; 2] {
+        let reprojection = Reprojection { splat: Splat::Nearest, ray_end: RayEnd::Reference };
+        Caster::with_storage(&self.volume, storage_kind(FORMAT))
+            .cast_pair(&self.parameters, &Aids::default(), &self.epipolar, reprojection)
+            .unwrap()
+    }
+}
+
+/// What both casters hold exactly.
+const FORMAT: TexelFormat = TexelFormat::R16FloatOf8Bit;
+
+/// Soft lumps of random size and place, one in the middle.
+fn noise(random: &mut Random) -> Volume {
+    let dims = [(); 3].map(|()| random.whole(9, 24) as usize);
+    let mut lumps = vec![(DVec3::splat(0.5), 0.2, 0.7)];
+    lumps.resize_with(6, || (random.vector(0.0, 1.0), random.between(0.1, 0.35), random.between(0.3, 1.0)));
+    let value = |p: DVec3| {
+        lumps
+            .iter()
+            .map(|&(at, width, height)| height * (-(p - at).length_squared() / (width * width)).exp())
+            .fold(0.0, f64::max)
+    };
+    let [nx, ny, nz] = dims;
+    let voxels = (0..nx * ny * nz)
+        .map(|i| {
+            let index = DVec3::new((i % nx) as f64, (i / nx % ny) as f64, (i / (nx * ny)) as f64);
+            let position = (index + 0.5) / DVec3::from(dims.map(|side| side as f64));
+            (255.0 * value(position) + random.between(-6.0, 6.0)).clamp(0.0, 255.0) as u8
+        })
+        .collect();
+    let spacing = DAffine3::from_scale(random.vector(0.8, 1.25));
+    Volume::new(Grid::new(dims, spacing).unwrap(), Voxels::U8(voxels)).unwrap()
+}
+
+/// Eyes before the volume, as far apart as makes so many layers; either picture may cut the volume off at the left or at the
+/// right.
+fn pair(random: &mut Random, parameters: &CastParameters, layers: u32, is_swapped: bool) -> Epipolar {
+    let size = [random.whole(20, 77) + layers, random.whole(5, 13)];
+    let eye = DVec3::new(random.between(-0.6, 0.6), random.between(-0.4, 0.4), random.between(1.1, 1.6));
+    let middle = look(
+        eye,
+        random.vector(-0.05, 0.05),
+        perspective(random.between(0.5, 1.1) * f64::from(size[1]) / f64::from(size[0]), size),
+        size,
+    );
+    // Both see the middle of the volume in the middle, but for a part of the picture.
+    let convergence_m = -middle.view_from_world.translation.z;
+    let pair = |eye_distance_m, shear| {
+        let rig = Rig::Stereo { eye_distance_m, convergence_m };
+        let [left, right]: [View; 2] = rig.views(&middle).try_into().unwrap();
+        let [reference, mut derived] = if is_swapped { [right, left] } else { [left, right] };
+        let Projection::Perspective(frustum) = derived.projection else { unreachable!() };
+        derived.projection = Projection::Perspective(frustum.sheared(shear));
+        Epipolar::new(&reference, &derived).unwrap()
+    };
+    let of_one_metre = pair(1.0, 0.0);
+    let depths_m = of_one_metre.depths_m(&parameters.visible_corners_world()).unwrap();
+    let columns_per_metre = of_one_metre.pixel_range(depths_m.start, depths_m.end);
+    let shear = random.between(-0.3, 0.3) * f64::from(size[0]) / of_one_metre.k();
+    pair((f64::from(layers) - 0.999) / columns_per_metre, shear)
+}
+
+/// Mean difference of channels, and the share of channels that differ by more than a limit.
+fn difference(a: &Cast, b: &Cast, limit: f64) -> (f64, f64) {
+    let channels = |cast: &Cast| cast.image.color.iter().flatten().copied().collect::<Vec<f32>>();
+    let differences: Vec<f64> =
+        channels(a).iter().zip(channels(b)).map(|(a, b)| f64::from((a - b).abs())).collect();
+    let count = differences.len() as f64;
+    let others = differences.iter().filter(|&&d| d > limit || d.is_nan()).count();
+    (differences.iter().sum::<f64>() / count, others as f64 / count)
+}
+
+#[test]
+fn every_form_is_the_sequential_order_and_the_same_bits_twice() {
+    on_device(|gpu, renderer| {
+        let mut failures = Vec::new();
+        for (number, layers) in (0..).zip(LAYERS) {
+            let case = Case::new(number, layers, Mode::Composite);
+            let truth = case.truth();
+            assert!(mean_alpha(&truth[1]) > 0.02, "case {number} is nearly empty");
+            // Truth ends each derived pixel at a sample, layers at a slab, strips not at all.
+            let behind_end = 1.0 - f64::from(case.parameters.termination_alpha);
+            for (form, [pair, again]) in FORMS.iter().zip(case.pairs(gpu, renderer, &FORMS)) {
+                for eye in 0..2 {
+                    let (mean, others) = difference(&pair[eye], &truth[eye], SAME + behind_end);
+                    if mean > MEAN_DIFFERENCE + 0.1 * behind_end || others > SHARE_OF_OTHERS {
+                        failures.push(format!(
+                            "{number} {form:?} of {layers} layers, eye {eye}: {mean} {others}"
+                        ));
+                    }
+                    assert_eq!(largest_difference(&pair[eye], &again[eye]), 0.0, "{number} {form:?}");
+                    assert_eq!(pair[eye].image.depth_m, again[eye].image.depth_m, "{number} {form:?}");
+                }
+            }
+        }
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+    });
+}
+
+fn mean_alpha(cast: &Cast) -> f64 {
+    cast.image.color.iter().map(|color| f64::from(color[3])).sum::<f64>() / cast.image.color.len() as f64
+}
+
+/// Levels of 1/255 that 8-bit layers may be off per layer.
+const LEVELS_PER_LAYER: f64 = 0.5;
+
+#[test]
+fn layers_of_8_bits_round_each_segment() {
+    on_device(|gpu, renderer| {
+        let layers = 12;
+        let case = Case::new(5, layers, Mode::Composite);
+        let forms = [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float].map(Form::Layers);
+        let [eight, half] = case.pairs(gpu, renderer, &forms).try_into().unwrap();
+        assert_eq!(largest_difference(&eight[0][0], &half[0][0]), 0.0);
+        let difference = largest_difference(&eight[0][1], &half[0][1]);
+        let most = LEVELS_PER_LAYER * f64::from(layers) / 255.0;
+        assert!((1e-4..most).contains(&difference), "{difference}");
+    });
+}
+
+#[test]
+fn more_layers_than_the_device_holds_are_said() {
+    on_device(|gpu, renderer| {
+        let case = Case::new(0, 3_000, Mode::Composite);
+        let uploaded = GpuVolume::upload_as(gpu, &case.volume, FORMAT, &mut |_, _| {}).unwrap();
+        let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), case.parameters.clone()).unwrap();
+        let targets = [(); 2].map(|()| Target::new(gpu, case.epipolar.reference().size).unwrap());
+        let method = PairMethod { form: Form::Layers(LayerFormat::Rgba8Unorm), ..PairMethod::default() };
+        let refused = renderer.render_pair(gpu, &prepared, &case.epipolar, method, targets.each_ref());
+        assert!(matches!(refused, Err(PairError::Layers { layers: 3_000, .. })), "{refused:?}");
+    });
+}
