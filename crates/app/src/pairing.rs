@@ -7,7 +7,7 @@ use crate::pair_cost::{self, PairJob};
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use wheatstone_core::cast::CastParameters;
-use wheatstone_render::{Form, PairMethod, Quality};
+use wheatstone_render::{Form, LayerFormat, PairMethod, Quality};
 
 /// Flags of stereo pairs.
 #[derive(Debug, Clone, Args)]
@@ -39,7 +39,13 @@ pub(crate) enum MethodName {
 
 impl ValueEnum for MethodName {
     fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Auto, Self::TwoPass, Self::SinglePass(FormName::Strips)]
+        &[
+            Self::Auto,
+            Self::TwoPass,
+            Self::SinglePass(FormName::Strips),
+            Self::SinglePass(FormName::Layers),
+            Self::SinglePass(FormName::Layers16),
+        ]
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
@@ -56,6 +62,11 @@ impl ValueEnum for MethodName {
 pub(crate) enum FormName {
     /// By one cast in strips of columns; only on a GPU.
     Strips,
+    /// By one cast into layers of 8 bits per channel; only on a GPU.
+    Layers,
+    /// By one cast into layers of 16 bits per channel; only on a GPU.
+    #[value(name = "layers-16")]
+    Layers16,
 }
 
 impl FormName {
@@ -63,12 +74,16 @@ impl FormName {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Strips => "strips",
+            Self::Layers => "layers",
+            Self::Layers16 => "layers-16",
         }
     }
 
     fn form(self) -> Form {
         match self {
             Self::Strips => Form::Strips,
+            Self::Layers => Form::Layers(LayerFormat::Rgba8Unorm),
+            Self::Layers16 => Form::Layers(LayerFormat::Rgba16Float),
         }
     }
 }

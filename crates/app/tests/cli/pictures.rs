@@ -249,10 +249,12 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
     };
     let two_pass = render("two.png", &["--backend", "gpu", "--stereo-method", "two-pass"]).json();
     assert_eq!(two_pass["stereo_method"], "two-pass");
-    for (eye, half) in [("left", 0), ("right", 48)] {
+    let ways =
+        [("strips", "left", 0), ("strips", "right", 48), ("layers", "left", 0), ("layers-16", "left", 0)];
+    for (method, eye, half) in ways {
         // Asked for by name, a pair of one cast is made on a GPU, software or not.
-        let one = render("one.png", &["--stereo-method", "strips", "--reference-eye", eye]).json();
-        assert_eq!((&one["backend"], &one["stereo_method"]), (&"gpu".into(), &"strips".into()), "{one}");
+        let one = render("one.png", &["--stereo-method", method, "--reference-eye", eye]).json();
+        assert_eq!((&one["backend"], &one["stereo_method"]), (&"gpu".into(), &method.into()), "{one}");
         assert_eq!((&one["stereo_quality"], &one["reference_eye"]), (&"fast".into(), &eye.into()));
         assert!(one["stereo_bytes"].as_u64().unwrap() > 0, "{one}");
         let compared = bench.run(&["compare", "two.png", "one.png", "--json"]).json();
@@ -260,7 +262,7 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
         let [two, one] =
             ["two.png", "one.png"].map(|name| image::open(bench.path(name)).unwrap().into_rgb8());
         for (a, b) in two.rows().zip(one.rows()).skip(half).take(48) {
-            assert!(a.zip(b).all(|(a, b)| (0..3).all(|c| a.0[c].abs_diff(b.0[c]) <= 1)), "{eye}");
+            assert!(a.zip(b).all(|(a, b)| (0..3).all(|c| a.0[c].abs_diff(b.0[c]) <= 1)), "{method} {eye}");
         }
     }
     let same_eyes = render("zero.png", &["--stereo-method", "strips", "--eye-distance", "0"]).json();

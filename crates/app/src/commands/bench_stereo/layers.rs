@@ -95,12 +95,12 @@ impl LayersRow {
 
 pub(super) fn to_table(rows: &[LayersRow]) -> String {
     let mut lines = vec![format!(
-        "{:<14} {:<7} {:<8} {:>5} {:>6} {:>6} {:>9} {:>9} {:>9}",
+        "{:<14} {:<9} {:<8} {:>5} {:>6} {:>6} {:>9} {:>9} {:>9}",
         "volume", "method", "quality", "side", "layers", "m", "clear ms", "comp. ms", "KiB"
     )];
     for row in rows {
         lines.push(format!(
-            "{:<14} {:<7} {:<8} {:>5} {:>6} {:>6.3} {:>9.2} {:>9.2} {:>9.0}",
+            "{:<14} {:<9} {:<8} {:>5} {:>6} {:>6.3} {:>9.2} {:>9.2} {:>9.0}",
             row.volume,
             row.pairing.form.name(),
             row.pairing.quality.name(),
