@@ -6,7 +6,7 @@ use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
-use crate::stereo::{LayerFormat, LayerPass, StripPass};
+use crate::stereo::{LayerFormat, LayerPass, PairTilePass, StripPass};
 use crate::target::Target;
 use crate::tile_pass::{self, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
@@ -33,6 +33,7 @@ pub struct Renderer {
     casts: VariantPipelines,
     tile_pass: TilePass,
     strip_pass: Option<StripPass>,
+    pair_tile_pass: Option<PairTilePass>,
     layer_passes: HashMap<LayerFormat, LayerPass>,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
@@ -109,6 +110,7 @@ impl Renderer {
             casts,
             tile_pass,
             strip_pass: None,
+            pair_tile_pass: None,
             layer_passes: HashMap::new(),
             sampler,
             unused,
@@ -230,6 +232,15 @@ impl Renderer {
             None => StripPass::new(&gpu.device, &self.groups)?,
         };
         Ok(self.strip_pass.insert(made))
+    }
+
+    /// Tiles of pairs, made when first asked for.
+    pub(crate) fn tiles(&mut self, gpu: &Gpu) -> Result<&mut PairTilePass, GpuError> {
+        let made = match self.pair_tile_pass.take() {
+            Some(made) => made,
+            None => PairTilePass::new(&gpu.device, &self.groups)?,
+        };
+        Ok(self.pair_tile_pass.insert(made))
     }
 
     /// Layers of a format, made when first asked for.

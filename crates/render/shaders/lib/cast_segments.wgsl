@@ -3,7 +3,7 @@ import package::lib::composite::{SEARCHES, STRETCH, blend, start_ray};
 import package::lib::cast_parameters::{parameters};
 import package::lib::pair::{pair};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
-import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, RayState};
+import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, RayState, new_ray_state};
 import package::lib::segment_sink::{SegmentPlace, put_segment};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::slabs::{end_of_slab, slab_at};
@@ -23,16 +23,20 @@ fn append(before: RayState, segment: RayState) -> RayState {
     return state;
 }
 
-// Casts the ray of a column and hands each slab's segment over; `place` is what the sink knows the ray by.
+// Casts a ray and hands each slab's segment over; `place` is what the sink knows the ray by.
 fn cast_segments(ray: Ray, place: SegmentPlace) -> RayState {
+    return cast_segments_between(ray, 0u, ray.sample_count, start_ray(ray), place);
+}
+
+// Casts the samples [begin, end) of a ray, which begin and end with a slab.
+fn cast_segments_between(ray: Ray, begin: u32, end: u32, before: RayState, place: SegmentPlace) -> RayState {
     let walk = start_walk(ray.first, ray.step);
-    let end = ray.sample_count;
-    var state = start_ray(ray);
-    var segment = state;
+    var state = before;
+    var segment = new_ray_state(before.scalar, NOTHING_HIT);
     var slab = pair.nearest + 1;
     var slab_end = 0u;
     var run_end = 0u;
-    var i = 0u;
+    var i = begin;
     while i < end && state.is_finished == 0u {
         if i >= run_end {
             let run = next_run(walk, i, end, 0.0);
@@ -55,7 +59,7 @@ fn cast_segments(ray: Ray, place: SegmentPlace) -> RayState {
             slab = min(slab_at(segment.depth_m), slab - 1);
             slab_end = max(end_of_slab(ray, slab), i + 1u);
         }
-        let begin = i;
+        let stretch_begin = i;
         let stretch_end = min(i + STRETCH, min(run_end, slab_end));
         while i < stretch_end {
             var value = 0.0;
@@ -79,11 +83,12 @@ fn cast_segments(ray: Ray, place: SegmentPlace) -> RayState {
                 break;
             }
         }
-        state.samples += i - begin;
+        state.samples += i - stretch_begin;
     }
     if segment.transmittance < 1.0 {
         put_segment(place, slab, segment);
         state = append(state, segment);
     }
+    state.scalar = segment.scalar;
     return state;
 }

@@ -23,7 +23,8 @@ struct Pair {
     is_mirrored: u32,
 }
 
-@group(3) @binding(0) var<uniform> pair: Pair;
+// Not uniform: Mesa 22's software Vulkan crashes on branches and loops that depend on a uniform buffer after the third.
+@group(3) @binding(0) var<storage, read> pair: Pair;
 
 // From a column of a picture to the sweep column, and back.
 fn mirrored(column: i32, picture_width: u32) -> i32 {

@@ -1,4 +1,4 @@
-import package::lib::ray_state::{NOTHING_HIT, Pixel};
+import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, Pixel};
 import package::lib::pair::{mirrored, pair};
 import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
 import package::lib::target::{store};
@@ -27,7 +27,7 @@ fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         let partial = partials[at];
         let partial_depth_m = partial_depths_m[at];
         color += partial * (1.0 - color.a);
-        if depth_m == NOTHING_HIT && partial_depth_m > 0.0 {
+        if depth_m == NOTHING_HIT && color.a >= FIRST_HIT_ALPHA {
             depth_m = partial_depth_m;
         }
         strip--;

@@ -14,9 +14,8 @@ struct SegmentPlace {
 fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
     let at = partial_at(place.row, place.strip, place.column - slab);
     let held = partials[at];
-    let sum = held + vec4f(segment.color, 1.0 - segment.transmittance) * (1.0 - held.a);
-    partials[at] = sum;
-    if held.a < FIRST_HIT_ALPHA && sum.a >= FIRST_HIT_ALPHA {
+    partials[at] = held + vec4f(segment.color, 1.0 - segment.transmittance) * (1.0 - held.a);
+    if held.a < FIRST_HIT_ALPHA {
         partial_depths_m[at] = segment.depth_m;
     }
 }

@@ -90,11 +90,13 @@ files! {
     "skip/zigzag",
     "stereo/cast_layers",
     "stereo/cast_strips",
+    "stereo/cast_tiles",
     "stereo/composite_layers",
     "stereo/layers_rgba16float",
     "stereo/layers_rgba8unorm",
     "stereo/merge_strips",
     "stereo/sink_layers",
     "stereo/sink_strips",
+    "stereo/sink_tiles",
     "tiles",
 }

@@ -7,7 +7,7 @@ use super::pair::{Eye, PairFrame, PairReport};
 use super::{LayerFormat, PairError};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::GpuError;
-use crate::groups::{GroupLayouts, bind, layout, uniform};
+use crate::groups::{GroupLayouts, bind, layout, read_only_storage};
 use crate::pacer::BAND_ROWS;
 use crate::pipeline::{KernelFiles, build};
 use crate::uniforms::PairUniform;
@@ -75,8 +75,8 @@ impl LayerPass {
             view_dimension,
             multisampled: false,
         };
-        let [cast_layout, composite_layout] =
-            [written, read].map(|texture| layout(device, "layers", &[uniform::<PairUniform>(), texture]));
+        let [cast_layout, composite_layout] = [written, read]
+            .map(|texture| layout(device, "layers", &[read_only_storage::<PairUniform>(), texture]));
         let pipeline_layout = |own| groups.pipeline_layout(device, "layers", Some(own));
         let files =
             KernelFiles { root: "stereo/composite_layers", choices: &[], entry_point: "composite_layers" };
@@ -100,25 +100,25 @@ impl LayerPass {
             encoder.clear_texture(&layers, &wgpu::ImageSubresourceRange::default());
         })?;
 
-        let pair = PairUniform::new(epipolar, *slabs, columns, 1);
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        let pair = PairUniform::new(epipolar, *slabs, columns, BAND_ROWS);
+        let pair_buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("layers"),
             contents: bytemuck::bytes_of(&pair),
-            usage: wgpu::BufferUsages::UNIFORM,
+            usage: wgpu::BufferUsages::STORAGE,
         });
         let view = layers.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
         let [cast_group, composite_group] = [&self.cast_layout, &self.composite_layout].map(|layout| {
-            let resources = [uniform.as_entire_binding(), wgpu::BindingResource::TextureView(&view)];
+            let resources = [pair_buffer.as_entire_binding(), wgpu::BindingResource::TextureView(&view)];
             bind(&gpu.device, layout, &resources)
         });
         let bindings = frame.bind(Eye::Reference);
         let cast = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&cast_group));
             let [_, bands] = frame.squares(Eye::Reference);
-            pass.dispatch_workgroups(pair.count.div_ceil(BAND_ROWS), bands, 1);
+            pass.dispatch_workgroups(pair.count, bands, 1);
         })?;
         let bindings = frame.bind(Eye::Derived);
         let composite = frame.run(|encoder| {

@@ -7,6 +7,9 @@ pub enum Form {
     /// A row of a strip of columns is cast ray after ray and composited on the way; strips are merged.
     #[default]
     Strips,
+    /// A workgroup casts a row of neighbouring columns side by side, keeps the segments in its own memory and composites
+    /// them; tiles are merged as strips are.
+    Tiles,
     /// Segments are left in layers, one for each slab of depth, and composited when all are cast (SP).
     Layers(LayerFormat),
 }

@@ -5,9 +5,11 @@ mod layers;
 mod method;
 mod pair;
 mod strips;
+mod tiles;
 
 pub use error::PairError;
 pub(crate) use layers::LayerPass;
 pub use method::{Form, LayerFormat, PairMethod, Quality};
 pub use pair::PairReport;
 pub(crate) use strips::StripPass;
+pub(crate) use tiles::PairTilePass;

@@ -82,6 +82,7 @@ impl Renderer {
         };
         match method.form {
             Form::Strips => self.strips(gpu)?.render(&frame),
+            Form::Tiles => self.tiles(gpu)?.render(&frame),
             Form::Layers(format) => self.layers(gpu, format)?.render(&frame),
         }
     }

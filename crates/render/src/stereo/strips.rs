@@ -7,7 +7,7 @@ use super::PairError;
 use super::pair::{Eye, PairFrame, PairReport};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::GpuError;
-use crate::groups::{GroupLayouts, bind, layout, storage_buffer, uniform};
+use crate::groups::{GroupLayouts, bind, layout, read_only_storage, storage_buffer};
 use crate::pipeline::{KernelFiles, build};
 use crate::uniforms::PairUniform;
 use std::ops::Range;
@@ -33,7 +33,7 @@ impl StripPass {
     /// # Errors
     /// [`GpuError::Refused`] for files that make no module.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
-        let types = [uniform::<PairUniform>(), storage_buffer(16), storage_buffer(4)];
+        let types = [read_only_storage::<PairUniform>(), storage_buffer(16), storage_buffer(4)];
         let strip_layout = layout(device, "strips", &types);
         let layout = groups.pipeline_layout(device, "strips", Some(&strip_layout));
         let files = KernelFiles { root: "stereo/merge_strips", choices: &[], entry_point: "merge_strips" };
@@ -92,7 +92,7 @@ impl StripPass {
                 mapped_at_creation: false,
             })
         };
-        let uniform_usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let uniform_usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let uniform = buffer("strips", size_of::<PairUniform>() as u64, uniform_usage);
         let [partials, depths_m] =
             PARTIAL_BYTES.map(|bytes| buffer("partial sums", slots * bytes, wgpu::BufferUsages::STORAGE));

@@ -1,0 +1,144 @@
+//! Tiles: the reference view cast by workgroups that own a row of neighbouring columns, and composite the derived view from
+//! the segments in their memory; the tiles' sums are merged as those of strips.
+//!
+//! More rays are cast at once than in strips, on devices that have the processors. Nothing is emptied: a tile writes all of
+//! its sums.
+
+use super::PairError;
+use super::pair::{Eye, PairFrame, PairReport};
+use crate::cast_pass::VariantPipelines;
+use crate::gpu::{Gpu, GpuError};
+use crate::groups::{GroupLayouts, bind, layout, read_only_storage, storage_buffer};
+use crate::pacer::BAND_ROWS;
+use crate::pipeline::{KernelFiles, build};
+use crate::uniforms::PairUniform;
+use std::time::Duration;
+
+/// Columns of a tile: `TILE_COLUMNS` of `stereo/sink_tiles.wgsl`.
+const TILE_COLUMNS: u32 = 32;
+
+/// Bytes of what a tile leaves for a derived pixel: RGBA, and the depth of the first hit.
+const PARTIAL_BYTES: [u64; 2] = [16, 4];
+
+/// Pipelines, and the buffers of the last pair.
+#[derive(Debug)]
+pub(crate) struct PairTilePass {
+    tile_layout: wgpu::BindGroupLayout,
+    cast: VariantPipelines,
+    merge: wgpu::ComputePipeline,
+    kept: Option<TileBuffers>,
+}
+
+impl PairTilePass {
+    /// Builds the merging pipeline; what the driver says against it comes with the next [`Gpu::check`].
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] for files that make no module.
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
+        let types = [
+            read_only_storage::<PairUniform>(),
+            storage_buffer(PARTIAL_BYTES[0]),
+            storage_buffer(PARTIAL_BYTES[1]),
+        ];
+        let tile_layout = layout(device, "pair tiles", &types);
+        let layout = groups.pipeline_layout(device, "pair tiles", Some(&tile_layout));
+        let files = KernelFiles { root: "stereo/merge_strips", choices: &[], entry_point: "merge_strips" };
+        let merge = build(device, Some(&layout), &files)?;
+        let cast = VariantPipelines::new(
+            layout,
+            "stereo/cast_tiles",
+            "cast_tiles",
+            &[("lib/segment_sink", "stereo/sink_tiles")],
+        );
+        Ok(Self { tile_layout, cast, merge, kept: None })
+    }
+
+    /// Makes a pair.
+    pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
+        let PairFrame { gpu, epipolar, slabs, columns, .. } = frame;
+        let pipeline = self.cast.pipeline(gpu, frame.prepared.variant)?;
+        let tiles = PairUniform::new(epipolar, *slabs, columns, TILE_COLUMNS);
+        let rows = frame.size()[1].next_multiple_of(BAND_ROWS);
+        let reached = u64::from(rows) * u64::from(tiles.count) * u64::from(TILE_COLUMNS + slabs.layers() - 1);
+        let buffers = match self.kept.take() {
+            Some(kept) if kept.reached >= reached => kept,
+            _ => TileBuffers::new(gpu, &self.tile_layout, reached)?,
+        };
+        gpu.queue.write_buffer(&buffers.pair, 0, bytemuck::bytes_of(&tiles));
+        let bindings = frame.bind(Eye::Reference);
+        let cast = frame.run(|encoder| {
+            let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&buffers.group));
+            let [_, bands] = frame.squares(Eye::Reference);
+            pass.dispatch_workgroups(tiles.count, bands, BAND_ROWS);
+        })?;
+        let bindings = frame.bind(Eye::Derived);
+        let composite = frame.run(|encoder| {
+            let mut pass = bindings.begin_pass(encoder, &self.merge, Some(&buffers.group));
+            let [squares_x, squares_y] = frame.squares(Eye::Derived);
+            pass.dispatch_workgroups(squares_x, squares_y, 1);
+        })?;
+        let bytes = buffers.reached * PARTIAL_BYTES.iter().sum::<u64>();
+        self.kept = Some(buffers);
+        Ok(PairReport { bytes, clear: Duration::ZERO, cast, composite })
+    }
+}
+
+/// Partial sums of tiles.
+#[derive(Debug)]
+struct TileBuffers {
+    /// Derived pixels that tiles reach, each counted once for each tile.
+    reached: u64,
+    pair: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl TileBuffers {
+    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, reached: u64) -> Result<Self, GpuError> {
+        let [color_bytes, depth_bytes] = PARTIAL_BYTES.map(|bytes| reached * bytes);
+        let limits = gpu.device.limits();
+        let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        if color_bytes > largest {
+            return Err(GpuError::Refused {
+                reason: format!("{color_bytes} bytes of partial sums for stereo; its buffers hold {largest}"),
+            });
+        }
+        let buffer = |label, size, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let pair_usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let pair = buffer("pair tiles", size_of::<PairUniform>() as u64, pair_usage);
+        let partials = buffer("partial sums", color_bytes, wgpu::BufferUsages::STORAGE);
+        let depths_m = buffer("partial depths", depth_bytes, wgpu::BufferUsages::STORAGE);
+        let group =
+            bind(&gpu.device, layout, &[&pair, &partials, &depths_m].map(wgpu::Buffer::as_entire_binding));
+        gpu.check()?;
+        Ok(Self { reached, pair, group })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compose;
+
+    #[test]
+    fn the_pass_builds_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        PairTilePass::new(&device, &GroupLayouts::new(&device)).unwrap();
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+
+    #[test]
+    fn constants_are_those_of_the_kernel() {
+        let text = compose("stereo/sink_tiles", &[]).unwrap().text;
+        assert!(text.contains(&format!("const TILE_COLUMNS: u32 = {TILE_COLUMNS}u;")));
+    }
+}
