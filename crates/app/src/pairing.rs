@@ -43,6 +43,7 @@ impl ValueEnum for MethodName {
             Self::Auto,
             Self::TwoPass,
             Self::SinglePass(FormName::Strips),
+            Self::SinglePass(FormName::Tiles),
             Self::SinglePass(FormName::Layers),
             Self::SinglePass(FormName::Layers16),
         ]
@@ -62,6 +63,8 @@ impl ValueEnum for MethodName {
 pub(crate) enum FormName {
     /// By one cast in strips of columns; only on a GPU.
     Strips,
+    /// By one cast in tiles of columns; only on a GPU.
+    Tiles,
     /// By one cast into layers of 8 bits per channel; only on a GPU.
     Layers,
     /// By one cast into layers of 16 bits per channel; only on a GPU.
@@ -74,6 +77,7 @@ impl FormName {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Strips => "strips",
+            Self::Tiles => "tiles",
             Self::Layers => "layers",
             Self::Layers16 => "layers-16",
         }
@@ -82,6 +86,7 @@ impl FormName {
     fn form(self) -> Form {
         match self {
             Self::Strips => Form::Strips,
+            Self::Tiles => Form::Tiles,
             Self::Layers => Form::Layers(LayerFormat::Rgba8Unorm),
             Self::Layers16 => Form::Layers(LayerFormat::Rgba16Float),
         }

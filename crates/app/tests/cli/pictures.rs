@@ -249,8 +249,13 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
     };
     let two_pass = render("two.png", &["--backend", "gpu", "--stereo-method", "two-pass"]).json();
     assert_eq!(two_pass["stereo_method"], "two-pass");
-    let ways =
-        [("strips", "left", 0), ("strips", "right", 48), ("layers", "left", 0), ("layers-16", "left", 0)];
+    let ways = [
+        ("strips", "left", 0),
+        ("strips", "right", 48),
+        ("tiles", "right", 48),
+        ("layers", "left", 0),
+        ("layers-16", "left", 0),
+    ];
     for (method, eye, half) in ways {
         // Asked for by name, a pair of one cast is made on a GPU, software or not.
         let one = render("one.png", &["--stereo-method", method, "--reference-eye", eye]).json();
