@@ -42,7 +42,7 @@ impl Variant {
             Mode::Mip => ("lib/accumulate_mip", false),
             Mode::MinIp => ("lib/accumulate_minip", false),
             Mode::Mean => ("lib/accumulate_mean", false),
-            Mode::XRay => ("lib/accumulate_xray", false),
+            Mode::XRay => (XRAY, false),
             Mode::Isosurface { .. } => ("lib/accumulate_first_hit", true),
         };
         let is_quads = sources.volume.format() == TexelFormat::Rgba8UnormQuads;
@@ -106,7 +106,7 @@ impl Variant {
             ("lib/accumulate_mip", [(SKIP_NONE, by_distance), (SKIP_BLOCKS, "lib/blocks_by_maximum")]),
             ("lib/accumulate_minip", [(SKIP_NONE, by_distance), (SKIP_BLOCKS, "lib/blocks_by_minimum")]),
             ("lib/accumulate_mean", skips),
-            ("lib/accumulate_xray", skips),
+            (XRAY, skips),
         ];
         let (volume, magnitude, resume) = (VOLUME_FILTERED, MAGNITUDE_ESTIMATED, RESUME_WHOLE);
         let tiles = TILES_ALL;
@@ -185,7 +185,11 @@ impl Variant {
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 10] {
+    fn choices(&self) -> [(&'static str, &'static str); 12] {
+        let (cast_segments, join) = match self.accumulator {
+            XRAY => ("lib/cast_integrals", "lib/join_sum"),
+            _ => ("lib/cast_segments", "lib/join_over"),
+        };
         [
             ("lib/accumulate", self.accumulator),
             ("lib/classify", self.classifier),
@@ -197,6 +201,8 @@ impl Variant {
             ("lib/magnitude", self.magnitude),
             ("lib/resume", self.resume),
             ("lib/tiles", self.tiles),
+            ("lib/cast_segments", cast_segments),
+            ("lib/join", join),
         ]
     }
 }
@@ -212,6 +218,7 @@ const TILES_LISTED: &str = "lib/tiles_listed";
 const SKIP_NONE: &str = "lib/skip_none";
 const SKIP_BLOCKS: &str = "lib/skip_blocks";
 const COMPOSITE: &str = "lib/accumulate_composite";
+const XRAY: &str = "lib/accumulate_xray";
 
 /// Loop iterations that a step along a ray costs at most where each of a group of eight rays in lockstep waits while the
 /// others search or leap in turn, and those that end the loops.
@@ -289,6 +296,17 @@ impl VariantPipelines {
         gpu.check()?;
         self.built.insert(variant, pipeline.clone());
         Ok(pipeline)
+    }
+
+    /// Builds every variant that pairs are made with.
+    #[cfg(test)]
+    pub(crate) fn build_all_of_pairs(&self, device: &wgpu::Device) {
+        let is_of_pairs = |variant: &Variant| {
+            [COMPOSITE, XRAY].contains(&variant.accumulator) && variant.resume == RESUME_WHOLE
+        };
+        for variant in Variant::all().into_iter().filter(is_of_pairs) {
+            self.build(device, variant).unwrap();
+        }
     }
 
     fn build(&self, device: &wgpu::Device, variant: Variant) -> Result<wgpu::ComputePipeline, GpuError> {

@@ -14,7 +14,6 @@ use crate::volume::GpuVolume;
 use glam::DVec3;
 use half::f16;
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::ops::Range;
 use std::time::Instant;
 use wgpu::util::DeviceExt as _;
@@ -226,29 +225,18 @@ impl Renderer {
     }
 
     /// Strips, made when first asked for.
-    pub(crate) fn strips(&mut self, gpu: &Gpu) -> Result<&mut StripPass, GpuError> {
-        let made = match self.strip_pass.take() {
-            Some(made) => made,
-            None => StripPass::new(&gpu.device, &self.groups)?,
-        };
-        Ok(self.strip_pass.insert(made))
+    pub(crate) fn strips(&mut self, gpu: &Gpu) -> &mut StripPass {
+        self.strip_pass.get_or_insert_with(|| StripPass::new(&gpu.device, &self.groups))
     }
 
     /// Tiles of pairs, made when first asked for.
-    pub(crate) fn tiles(&mut self, gpu: &Gpu) -> Result<&mut PairTilePass, GpuError> {
-        let made = match self.pair_tile_pass.take() {
-            Some(made) => made,
-            None => PairTilePass::new(&gpu.device, &self.groups)?,
-        };
-        Ok(self.pair_tile_pass.insert(made))
+    pub(crate) fn tiles(&mut self, gpu: &Gpu) -> &mut PairTilePass {
+        self.pair_tile_pass.get_or_insert_with(|| PairTilePass::new(&gpu.device, &self.groups))
     }
 
     /// Layers of a format, made when first asked for.
-    pub(crate) fn layers(&mut self, gpu: &Gpu, format: LayerFormat) -> Result<&mut LayerPass, GpuError> {
-        Ok(match self.layer_passes.entry(format) {
-            Entry::Occupied(made) => made.into_mut(),
-            Entry::Vacant(none) => none.insert(LayerPass::new(&gpu.device, &self.groups, format)?),
-        })
+    pub(crate) fn layers(&mut self, gpu: &Gpu, format: LayerFormat) -> &mut LayerPass {
+        self.layer_passes.entry(format).or_insert_with(|| LayerPass::new(&gpu.device, &self.groups, format))
     }
 
     /// The bindings of a target, of the rays that are kept and of the tiles that are listed.

@@ -6,7 +6,7 @@ import package::lib::ray::{Ray, ray_at, ray_depth_m};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, RayState, new_ray_state};
 import package::lib::segment_sink::{SegmentPlace, put_segment};
 import package::lib::skip::{next_run, start_walk};
-import package::lib::slabs::{end_of_slab, slab_at};
+import package::lib::slabs::{end_of_slab, slab_at, start_of_slab};
 import package::lib::volume::{value_at};
 
 // Rays of the reference view cut into segments, one for each slab of depth: all samples of a slab land on the same derived
@@ -25,18 +25,19 @@ fn append(before: RayState, segment: RayState) -> RayState {
 
 // Casts a ray and hands each slab's segment over; `place` is what the sink knows the ray by.
 fn cast_segments(ray: Ray, place: SegmentPlace) -> RayState {
-    return cast_segments_between(ray, 0u, ray.sample_count, start_ray(ray), place);
+    return cast_slabs(ray, pair.nearest, pair.furthest, start_ray(ray), place);
 }
 
-// Casts the samples [begin, end) of a ray, which begin and end with a slab.
-fn cast_segments_between(ray: Ray, begin: u32, end: u32, before: RayState, place: SegmentPlace) -> RayState {
+// Casts a ray through some slabs.
+fn cast_slabs(ray: Ray, nearest: i32, furthest: i32, before: RayState, place: SegmentPlace) -> RayState {
+    let end = end_of_slab(ray, furthest);
     let walk = start_walk(ray.first, ray.step);
     var state = before;
     var segment = new_ray_state(before.scalar, NOTHING_HIT);
-    var slab = pair.nearest + 1;
+    var slab = nearest + 1;
     var slab_end = 0u;
     var run_end = 0u;
-    var i = begin;
+    var i = start_of_slab(ray, nearest);
     while i < end && state.is_finished == 0u {
         if i >= run_end {
             let run = next_run(walk, i, end, 0.0);

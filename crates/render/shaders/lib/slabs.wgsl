@@ -3,9 +3,23 @@ import package::lib::ray::{Ray};
 
 // Slabs of depth in which all samples of a ray move by the same number of columns.
 
+// Depth that counts as infinite, metres.
+const INFINITY_M: f32 = 1e30;
+
 // The slab of a depth.
 fn slab_at(depth_m: f32) -> i32 {
     return clamp(i32(ceil(pair.k / depth_m - pair.offset)), pair.furthest, pair.nearest);
+}
+
+// Depths at which a slab begins and ends, metres.
+fn bounds_of_slab_m(slab: i32) -> vec2f {
+    let over = f32(slab) + pair.offset;
+    return vec2f(pair.k / over, select(INFINITY_M, pair.k / (over - 1.0), over > 1.0));
+}
+
+// First sample of a slab.
+fn start_of_slab(ray: Ray, slab: i32) -> u32 {
+    return select(end_of_slab(ray, slab + 1), 0u, slab == pair.nearest);
 }
 
 // First sample behind a slab.

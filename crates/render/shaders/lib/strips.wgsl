@@ -2,7 +2,7 @@ import package::lib::pair::{pair};
 
 // What each strip of columns adds to the derived columns that its rays reach.
 
-// Premultiplied RGBA; zero at first.
+// Joints of segments; zero at first.
 @group(3) @binding(1) var<storage, read_write> partials: array<vec4f>;
 // Depth of the first hit of each, metres; of the last segment if they let more light through than that.
 @group(3) @binding(2) var<storage, read_write> partial_depths_m: array<f32>;

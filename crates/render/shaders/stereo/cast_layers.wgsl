@@ -1,5 +1,5 @@
+import package::lib::accumulate::{finish_ray};
 import package::lib::cast_segments::{cast_segments};
-import package::lib::composite::{finish_ray};
 import package::lib::pair::{mirrored, pair};
 import package::lib::ray::{ray_through};
 import package::lib::segment_sink::{SegmentPlace};

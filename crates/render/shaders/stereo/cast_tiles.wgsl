@@ -1,10 +1,10 @@
-import package::lib::cast_segments::{cast_segments_between};
-import package::lib::composite::{finish_ray, start_ray};
+import package::lib::accumulate::{finish_ray, start_ray};
+import package::lib::cast_segments::{cast_slabs};
+import package::lib::join::{join};
 import package::lib::pair::{mirrored, pair};
 import package::lib::ray::{ray_through};
 import package::lib::ray_state::{FIRST_HIT_ALPHA};
 import package::lib::segment_sink::{ROUND_SLABS, SegmentPlace, TILE_COLUMNS, empty_slots, segment_depths_m, segments, slot_at};
-import package::lib::slabs::{end_of_slab};
 import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
 import package::lib::target::{store};
 import package::lib::view::{first_pixel_of_group, view};
@@ -24,12 +24,10 @@ fn cast_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
         ray.sample_count = 0u;
     }
     var state = start_ray(ray);
-    var begin = 0u;
     for (var nearest = pair.nearest; nearest >= pair.furthest; nearest -= i32(ROUND_SLABS)) {
         empty_slots(lane);
-        let end = end_of_slab(ray, max(nearest - i32(ROUND_SLABS) + 1, pair.furthest));
-        state = cast_segments_between(ray, begin, end, state, SegmentPlace(lane, nearest));
-        begin = end;
+        let furthest = max(nearest - i32(ROUND_SLABS) + 1, pair.furthest);
+        state = cast_slabs(ray, nearest, furthest, state, SegmentPlace(lane, nearest));
         workgroupBarrier();
         composite_round(row, tile, lane, nearest);
         workgroupBarrier();
@@ -58,7 +56,7 @@ fn composite_round(row: u32, tile: u32, lane: u32, nearest: i32) {
             let slot = slot_at(u32(column), from_first - u32(column));
             let segment = segments[slot];
             depth_m = select(depth_m, segment_depths_m[slot], sum.a < FIRST_HIT_ALPHA && segment.a > 0.0);
-            sum += segment * (1.0 - sum.a);
+            sum = join(sum, segment);
             column--;
         }
         partials[at] = sum;

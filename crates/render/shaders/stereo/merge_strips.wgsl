@@ -1,3 +1,4 @@
+import package::lib::join::{color_of, join};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, Pixel};
 import package::lib::pair::{mirrored, pair};
 import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
@@ -18,7 +19,7 @@ fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let from_first = column - first_reached(0u);
     let last = select(-1, min(from_first / width, i32(pair.count) - 1), from_first >= 0);
     let first = max((from_first - i32(reach()) + width) / width, 0);
-    var color = vec4f(0.0);
+    var joint = vec4f(0.0);
     var depth_m = NOTHING_HIT;
     // Reads outside of branches: a branch around the loop crashes Mesa 22's software Vulkan.
     var strip = last;
@@ -26,11 +27,11 @@ fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         let at = partial_at(pixel.y, u32(strip), column);
         let partial = partials[at];
         let partial_depth_m = partial_depths_m[at];
-        color += partial * (1.0 - color.a);
-        if depth_m == NOTHING_HIT && color.a >= FIRST_HIT_ALPHA {
+        joint = join(joint, partial);
+        if depth_m == NOTHING_HIT && joint.a >= FIRST_HIT_ALPHA {
             depth_m = partial_depth_m;
         }
         strip--;
     }
-    store(pixel, Pixel(color, depth_m, 0u, 0u));
+    store(pixel, Pixel(color_of(joint), depth_m, 0u, 0u));
 }

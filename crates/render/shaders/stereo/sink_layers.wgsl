@@ -1,3 +1,4 @@
+import package::lib::join::{joint_of};
 import package::lib::layers::{layer_of};
 import package::lib::layer_target::{layers};
 import package::lib::ray_state::{RayState};
@@ -15,7 +16,6 @@ struct SegmentPlace {
 fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
     let column = place.column - slab;
     if column >= 0 && column < i32(view.width) {
-        let color = vec4f(segment.color, 1.0 - segment.transmittance);
-        textureStore(layers, vec2i(column, i32(place.row)), layer_of(place.column), color);
+        textureStore(layers, vec2i(column, i32(place.row)), layer_of(place.column), joint_of(segment));
     }
 }

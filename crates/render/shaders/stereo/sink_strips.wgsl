@@ -1,3 +1,4 @@
+import package::lib::join::{join, joint_of};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, RayState};
 import package::lib::strips::{partial_at, partial_depths_m, partials};
 
@@ -14,7 +15,7 @@ struct SegmentPlace {
 fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
     let at = partial_at(place.row, place.strip, place.column - slab);
     let held = partials[at];
-    partials[at] = held + vec4f(segment.color, 1.0 - segment.transmittance) * (1.0 - held.a);
+    partials[at] = join(held, joint_of(segment));
     if held.a < FIRST_HIT_ALPHA {
         partial_depths_m[at] = segment.depth_m;
     }

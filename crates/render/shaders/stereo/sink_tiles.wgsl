@@ -1,3 +1,4 @@
+import package::lib::join::{join, joint_of};
 import package::lib::ray_state::{RayState};
 
 // Segments go into the memory of the workgroup, for a round of slabs.
@@ -8,7 +9,7 @@ const TILE_COLUMNS: u32 = 32u;
 // Slabs of a round: as many as keep the memory below 16 KiB.
 const ROUND_SLABS: u32 = 24u;
 
-// Premultiplied RGBA of segments, by slab from the nearest and lane.
+// Joints of segments, by slab from the nearest and lane.
 var<workgroup> segments: array<vec4f, TILE_COLUMNS * ROUND_SLABS>;
 // Depths of the first samples, metres.
 var<workgroup> segment_depths_m: array<f32, TILE_COLUMNS * ROUND_SLABS>;
@@ -27,7 +28,7 @@ fn slot_at(lane: u32, slab_from_nearest: u32) -> u32 {
 fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
     let at = slot_at(place.lane, u32(clamp(place.nearest - slab, 0, i32(ROUND_SLABS) - 1)));
     let held = segments[at];
-    segments[at] = held + vec4f(segment.color, 1.0 - segment.transmittance) * (1.0 - held.a);
+    segments[at] = join(held, joint_of(segment));
     segment_depths_m[at] = select(segment_depths_m[at], segment.depth_m, held.a == 0.0);
 }
 

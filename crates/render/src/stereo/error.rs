@@ -12,8 +12,8 @@ pub enum PairError {
     /// The views do not correspond row by row.
     #[error(transparent)]
     Views(#[from] StereoError),
-    /// Something other than composited colour.
-    #[error("only composited pictures are derived")]
+    /// Something other than composites and X-rays.
+    #[error("only composites and X-rays are derived")]
     Mode,
     /// Rays of which a driver does not take one in a dispatch.
     #[error("rays of up to {samples} samples are too long for one dispatch on this device")]

@@ -1,15 +1,13 @@
 //! Layers: the reference view cast ray by ray, the segments left in layers of the derived view that another pass composites.
 //!
 //! Single-pass stereo as published (SP Alg. 1–3). Of a derived pixel's depth only the slab is known: it is that of the
-//! middle of the slab's samples.
+//! slab's middle.
 
 use super::pair::{Eye, PairFrame, PairReport};
 use super::{LayerFormat, PairError};
 use crate::cast_pass::VariantPipelines;
-use crate::gpu::GpuError;
 use crate::groups::{GroupLayouts, bind, layout, read_only_storage};
 use crate::pacer::BAND_ROWS;
-use crate::pipeline::{KernelFiles, build};
 use crate::uniforms::PairUniform;
 use wgpu::util::DeviceExt as _;
 
@@ -50,20 +48,13 @@ pub(crate) struct LayerPass {
     cast_layout: wgpu::BindGroupLayout,
     cast: VariantPipelines,
     composite_layout: wgpu::BindGroupLayout,
-    composite: wgpu::ComputePipeline,
+    composite: VariantPipelines,
     layers: Option<wgpu::Texture>,
 }
 
 impl LayerPass {
-    /// Builds the compositing pipeline; what the driver says against it comes with the next [`Gpu::check`].
-    ///
-    /// # Errors
-    /// [`GpuError::Refused`] for files that make no module.
-    pub(crate) fn new(
-        device: &wgpu::Device,
-        groups: &GroupLayouts,
-        format: LayerFormat,
-    ) -> Result<Self, GpuError> {
+    /// Nothing built yet.
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts, format: LayerFormat) -> Self {
         let view_dimension = wgpu::TextureViewDimension::D2Array;
         let written = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
@@ -78,16 +69,19 @@ impl LayerPass {
         let [cast_layout, composite_layout] = [written, read]
             .map(|texture| layout(device, "layers", &[read_only_storage::<PairUniform>(), texture]));
         let pipeline_layout = |own| groups.pipeline_layout(device, "layers", Some(own));
-        let files =
-            KernelFiles { root: "stereo/composite_layers", choices: &[], entry_point: "composite_layers" };
-        let composite = build(device, Some(&pipeline_layout(&composite_layout)), &files)?;
+        let composite = VariantPipelines::new(
+            pipeline_layout(&composite_layout),
+            "stereo/composite_layers",
+            "composite_layers",
+            &[],
+        );
         let cast = VariantPipelines::new(
             pipeline_layout(&cast_layout),
             "stereo/cast_layers",
             "cast_layers",
             format.files(),
         );
-        Ok(Self { format, cast_layout, cast, composite_layout, composite, layers: None })
+        Self { format, cast_layout, cast, composite_layout, composite, layers: None }
     }
 
     /// Makes a pair.
@@ -95,6 +89,7 @@ impl LayerPass {
         let PairFrame { gpu, prepared, epipolar, slabs, columns, .. } = frame;
         let bytes = slabs.layer_bytes(frame.size(), self.format.bytes_per_pixel());
         let pipeline = self.cast.pipeline(gpu, prepared.variant)?;
+        let composite_pipeline = self.composite.pipeline(gpu, prepared.variant)?;
         let layers = self.layers(frame, bytes)?;
         let clear = frame.run(|encoder| {
             encoder.clear_texture(&layers, &wgpu::ImageSubresourceRange::default());
@@ -122,7 +117,7 @@ impl LayerPass {
         })?;
         let bindings = frame.bind(Eye::Derived);
         let composite = frame.run(|encoder| {
-            let mut pass = bindings.begin_pass(encoder, &self.composite, Some(&composite_group));
+            let mut pass = bindings.begin_pass(encoder, &composite_pipeline, Some(&composite_group));
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
             pass.dispatch_workgroups(squares_x, squares_y, 1);
         })?;
@@ -170,7 +165,8 @@ mod tests {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         for format in [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float] {
-            LayerPass::new(&device, &GroupLayouts::new(&device), format).unwrap();
+            let pass = LayerPass::new(&device, &GroupLayouts::new(&device), format);
+            [pass.cast, pass.composite].iter().for_each(|pipelines| pipelines.build_all_of_pairs(&device));
         }
         if let Some(error) = pollster::block_on(scope.pop()) {
             panic!("{error}");

@@ -17,7 +17,7 @@ pub enum Form {
 /// How segments are held in layers: premultiplied RGBA.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LayerFormat {
-    /// 8 bits per channel: each segment is rounded to a level of 1/255.
+    /// 8 bits per channel: each segment is rounded to a level of 1/255, which is much of what one adds to an X-ray.
     Rgba8Unorm,
     /// Half floats.
     Rgba16Float,

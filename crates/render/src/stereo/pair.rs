@@ -71,7 +71,7 @@ impl Renderer {
     ) -> Result<PairReport, PairError> {
         let size = epipolar.reference().size;
         assert!(targets.iter().all(|target| target.size() == size), "targets have the size of their views");
-        if prepared.parameters.mode != Mode::Composite {
+        if !matches!(prepared.parameters.mode, Mode::Composite | Mode::XRay) {
             return Err(PairError::Mode);
         }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -81,9 +81,9 @@ impl Renderer {
             return Ok(PairReport::default());
         };
         match method.form {
-            Form::Strips => self.strips(gpu)?.render(&frame),
-            Form::Tiles => self.tiles(gpu)?.render(&frame),
-            Form::Layers(format) => self.layers(gpu, format)?.render(&frame),
+            Form::Strips => self.strips(gpu).render(&frame),
+            Form::Tiles => self.tiles(gpu).render(&frame),
+            Form::Layers(format) => self.layers(gpu, format).render(&frame),
         }
     }
 

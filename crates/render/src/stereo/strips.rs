@@ -8,7 +8,6 @@ use super::pair::{Eye, PairFrame, PairReport};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::GpuError;
 use crate::groups::{GroupLayouts, bind, layout, read_only_storage, storage_buffer};
-use crate::pipeline::{KernelFiles, build};
 use crate::uniforms::PairUniform;
 use std::ops::Range;
 use std::time::Duration;
@@ -24,32 +23,29 @@ const PARTIAL_BYTES: [u64; 2] = [16, 4];
 pub(crate) struct StripPass {
     strip_layout: wgpu::BindGroupLayout,
     cast: VariantPipelines,
-    merge: wgpu::ComputePipeline,
+    merge: VariantPipelines,
 }
 
 impl StripPass {
-    /// Builds the merging pipeline; what the driver says against it comes with the next [`Gpu::check`].
-    ///
-    /// # Errors
-    /// [`GpuError::Refused`] for files that make no module.
-    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
+    /// Nothing built yet.
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
         let types = [read_only_storage::<PairUniform>(), storage_buffer(16), storage_buffer(4)];
         let strip_layout = layout(device, "strips", &types);
         let layout = groups.pipeline_layout(device, "strips", Some(&strip_layout));
-        let files = KernelFiles { root: "stereo/merge_strips", choices: &[], entry_point: "merge_strips" };
-        let merge = build(device, Some(&layout), &files)?;
+        let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", &[]);
         let cast = VariantPipelines::new(
             layout,
             "stereo/cast_strips",
             "cast_strips",
             &[("lib/segment_sink", "stereo/sink_strips")],
         );
-        Ok(Self { strip_layout, cast, merge })
+        Self { strip_layout, cast, merge }
     }
 
     /// Makes a pair.
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
         let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
+        let merge = self.merge.pipeline(frame.gpu, frame.prepared.variant)?;
         let buffers = self.buffers(frame)?;
         let bindings = frame.bind(Eye::Reference);
         let mut cast = Duration::ZERO;
@@ -63,7 +59,7 @@ impl StripPass {
         }
         let bindings = frame.bind(Eye::Derived);
         let composite = frame.run(|encoder| {
-            let mut pass = bindings.begin_pass(encoder, &self.merge, Some(&buffers.group));
+            let mut pass = bindings.begin_pass(encoder, &merge, Some(&buffers.group));
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
             pass.dispatch_workgroups(squares_x, squares_y, 1);
         })?;

@@ -10,7 +10,6 @@ use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{GroupLayouts, bind, layout, read_only_storage, storage_buffer};
 use crate::pacer::BAND_ROWS;
-use crate::pipeline::{KernelFiles, build};
 use crate::uniforms::PairUniform;
 use std::time::Duration;
 
@@ -25,16 +24,13 @@ const PARTIAL_BYTES: [u64; 2] = [16, 4];
 pub(crate) struct PairTilePass {
     tile_layout: wgpu::BindGroupLayout,
     cast: VariantPipelines,
-    merge: wgpu::ComputePipeline,
+    merge: VariantPipelines,
     kept: Option<TileBuffers>,
 }
 
 impl PairTilePass {
-    /// Builds the merging pipeline; what the driver says against it comes with the next [`Gpu::check`].
-    ///
-    /// # Errors
-    /// [`GpuError::Refused`] for files that make no module.
-    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
+    /// Nothing built yet.
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
         let types = [
             read_only_storage::<PairUniform>(),
             storage_buffer(PARTIAL_BYTES[0]),
@@ -42,21 +38,21 @@ impl PairTilePass {
         ];
         let tile_layout = layout(device, "pair tiles", &types);
         let layout = groups.pipeline_layout(device, "pair tiles", Some(&tile_layout));
-        let files = KernelFiles { root: "stereo/merge_strips", choices: &[], entry_point: "merge_strips" };
-        let merge = build(device, Some(&layout), &files)?;
+        let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", &[]);
         let cast = VariantPipelines::new(
             layout,
             "stereo/cast_tiles",
             "cast_tiles",
             &[("lib/segment_sink", "stereo/sink_tiles")],
         );
-        Ok(Self { tile_layout, cast, merge, kept: None })
+        Self { tile_layout, cast, merge, kept: None }
     }
 
     /// Makes a pair.
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
         let PairFrame { gpu, epipolar, slabs, columns, .. } = frame;
         let pipeline = self.cast.pipeline(gpu, frame.prepared.variant)?;
+        let merge = self.merge.pipeline(gpu, frame.prepared.variant)?;
         let tiles = PairUniform::new(epipolar, *slabs, columns, TILE_COLUMNS);
         let rows = frame.size()[1].next_multiple_of(BAND_ROWS);
         let reached = u64::from(rows) * u64::from(tiles.count) * u64::from(TILE_COLUMNS + slabs.layers() - 1);
@@ -73,7 +69,7 @@ impl PairTilePass {
         })?;
         let bindings = frame.bind(Eye::Derived);
         let composite = frame.run(|encoder| {
-            let mut pass = bindings.begin_pass(encoder, &self.merge, Some(&buffers.group));
+            let mut pass = bindings.begin_pass(encoder, &merge, Some(&buffers.group));
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
             pass.dispatch_workgroups(squares_x, squares_y, 1);
         })?;
@@ -130,7 +126,8 @@ mod tests {
     fn the_pass_builds_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        PairTilePass::new(&device, &GroupLayouts::new(&device)).unwrap();
+        let pass = PairTilePass::new(&device, &GroupLayouts::new(&device));
+        [pass.cast, pass.merge].iter().for_each(|pipelines| pipelines.build_all_of_pairs(&device));
         if let Some(error) = pollster::block_on(scope.pop()) {
             panic!("{error}");
         }
@@ -138,7 +135,7 @@ mod tests {
 
     #[test]
     fn constants_are_those_of_the_kernel() {
-        let text = compose("stereo/sink_tiles", &[]).unwrap().text;
+        let text = compose("stereo/sink_tiles", &[("lib/join", "lib/join_over")]).unwrap().text;
         assert!(text.contains(&format!("const TILE_COLUMNS: u32 = {TILE_COLUMNS}u;")));
     }
 }

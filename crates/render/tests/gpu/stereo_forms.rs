@@ -190,31 +190,36 @@ fn share_of_other_hits(a: &Cast, b: &Cast, k: f64) -> f64 {
     depths_m.filter(is_other).count() as f64 / a.image.depth_m.len() as f64
 }
 
-#[test]
-fn every_form_is_the_sequential_order_and_the_same_bits_twice() {
+fn mean_alpha(cast: &Cast) -> f64 {
+    cast.image.color.iter().map(|color| f64::from(color[3])).sum::<f64>() / cast.image.color.len() as f64
+}
+
+/// Holds every form to the sequential order and to itself, for cases by number and layers.
+fn check(cases: impl Iterator<Item = (u64, u32)>, mode: Mode) {
     on_device(|gpu, renderer| {
         let mut failures = Vec::new();
-        for (number, layers) in (0..).zip(LAYERS) {
-            let case = Case::new(number, layers, Mode::Composite);
+        for (number, layers) in cases {
+            let case = Case::new(number, layers, mode);
             let truth = case.truth();
             assert!(mean_alpha(&truth[1]) > 0.02, "case {number} is nearly empty");
-            // Truth ends each derived pixel at a sample, layers at a slab, strips not at all.
+            // Truth ends each derived pixel at a sample, layers at a slab, strips and tiles not at all.
             let behind_end = 1.0 - f64::from(case.parameters.termination_alpha);
             for (form, [pair, again]) in FORMS.iter().zip(case.pairs(gpu, renderer, &FORMS)) {
-                for eye in 0..2 {
-                    let (mean, others) = difference(&pair[eye], &truth[eye], SAME + behind_end);
-                    if mean > MEAN_DIFFERENCE + 0.1 * behind_end || others > SHARE_OF_OTHERS {
+                for (eye, [pair, again, truth]) in
+                    [0, 1].map(|eye| [&pair[eye], &again[eye], &truth[eye]]).into_iter().enumerate()
+                {
+                    let (mean, others) = difference(pair, truth, SAME + behind_end);
+                    let hits = share_of_other_hits(pair, truth, case.epipolar.k());
+                    if mean > MEAN_DIFFERENCE + 0.1 * behind_end
+                        || others > SHARE_OF_OTHERS
+                        || hits > SHARE_OF_OTHER_HITS
+                    {
                         failures.push(format!(
-                            "{number} {form:?} of {layers} layers, eye {eye}: {mean} {others}"
+                            "{number} {form:?} of {layers} layers, eye {eye}: mean {mean}, others {others}, hits {hits}"
                         ));
                     }
-                    let hits = share_of_other_hits(&pair[eye], &truth[eye], case.epipolar.k());
-                    if hits > SHARE_OF_OTHER_HITS {
-                        failures
-                            .push(format!("{number} {form:?} of {layers} layers, eye {eye}: hits {hits}"));
-                    }
-                    assert_eq!(largest_difference(&pair[eye], &again[eye]), 0.0, "{number} {form:?}");
-                    assert_eq!(pair[eye].image.depth_m, again[eye].image.depth_m, "{number} {form:?}");
+                    assert_eq!(largest_difference(pair, again), 0.0, "{number} {form:?}");
+                    assert_eq!(pair.image.depth_m, again.image.depth_m, "{number} {form:?}");
                 }
             }
         }
@@ -222,8 +227,14 @@ fn every_form_is_the_sequential_order_and_the_same_bits_twice() {
     });
 }
 
-fn mean_alpha(cast: &Cast) -> f64 {
-    cast.image.color.iter().map(|color| f64::from(color[3])).sum::<f64>() / cast.image.color.len() as f64
+#[test]
+fn every_form_is_the_sequential_order_and_the_same_bits_twice() {
+    check((0..).zip(LAYERS), Mode::Composite);
+}
+
+#[test]
+fn x_rays_add_up_in_every_form() {
+    check((20..).zip([1, 4, 33, 65, 128]), Mode::XRay);
 }
 
 /// Levels of 1/255 that 8-bit layers may be off per layer.
