@@ -228,6 +228,31 @@ fn check(cases: impl Iterator<Item = (u64, u32)>, mode: Mode) {
 }
 
 #[test]
+fn cases_are_of_every_kind() {
+    let kinds = (0..).zip(LAYERS).map(|(number, layers)| {
+        let case = Case::new(number, layers, Mode::Composite);
+        let corners = case.parameters.visible_corners_world();
+        let [width, _] = case.epipolar.reference().size;
+        let columns = case.epipolar.columns_of(&corners, &(-4_000..4_000));
+        let depths_m = case.epipolar.depths_m(&corners).unwrap();
+        let slabs = case.epipolar.slabs().between(depths_m.start, depths_m.end);
+        let cast = case.epipolar.columns_of(&corners, &slabs.cast_columns(width));
+        [
+            ("cut at the left", columns.start < 0),
+            ("cut at the right", columns.end > width as i32),
+            ("rays beyond the left edge", cast.start < 0),
+            ("rays beyond the right edge", cast.end > width as i32),
+            ("shifts to both sides", slabs.furthest < 0 && slabs.nearest > 0),
+            ("shifts to one side", slabs.furthest > 0 || slabs.nearest < 0),
+            ("mirrored", case.epipolar.is_mirrored()),
+            ("layers shared by rays", cast.len() > 2 * layers as usize),
+        ]
+    });
+    let found = kinds.reduce(|a, b| std::array::from_fn(|i| (a[i].0, a[i].1 || b[i].1))).unwrap();
+    assert!(found.iter().all(|(_, is_found)| *is_found), "{found:?}");
+}
+
+#[test]
 fn every_form_is_the_sequential_order_and_the_same_bits_twice() {
     check((0..).zip(LAYERS), Mode::Composite);
 }
