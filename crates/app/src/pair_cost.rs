@@ -23,7 +23,7 @@ pub(crate) struct PairJob {
 /// The cheapest way to make a pair on a GPU of one cast; nothing if two casts are cheaper, or the mode has no other way.
 pub(crate) fn cheapest(job: &PairJob) -> Option<FormName> {
     let second_cast = f64::from(1 + job.shading_samples);
-    let is_derived = matches!(job.mode, Mode::Composite);
+    let is_derived = matches!(job.mode, Mode::Composite | Mode::XRay);
     (is_derived && strips(job) < second_cast).then_some(FormName::Strips)
 }
 
@@ -40,11 +40,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn composites_are_derived_and_projections_are_not() {
+    fn sums_along_rays_are_derived_and_extremes_are_not() {
         let job =
             PairJob { mode: Mode::Composite, shading_samples: 0, leaps: true, quality: QualityName::Fast };
         assert_eq!(cheapest(&job), Some(FormName::Strips));
         assert_eq!(cheapest(&PairJob { shading_samples: 24, leaps: false, ..job }), Some(FormName::Strips));
+        assert_eq!(cheapest(&PairJob { mode: Mode::XRay, ..job }), Some(FormName::Strips));
         assert_eq!(cheapest(&PairJob { mode: Mode::Mip, ..job }), None);
     }
 }

@@ -272,6 +272,7 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
     }
     let same_eyes = render("zero.png", &["--stereo-method", "strips", "--eye-distance", "0"]).json();
     assert_eq!(same_eyes["stereo_method"], "strips");
+    assert_eq!(render("xray.png", &["--backend", "gpu", "--mode", "xray"]).json()["stereo_method"], "strips");
     let mip = ["--backend", "gpu", "--mode", "mip"];
     let silent = render("mip.png", &mip);
     assert!(
