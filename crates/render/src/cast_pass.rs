@@ -7,7 +7,7 @@ use crate::pipeline::{KernelFiles, build};
 use crate::renderer::Sources;
 use crate::volume::TexelFormat;
 use std::collections::HashMap;
-use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, DIRECTIONAL_STEPS, SHADOW_SAMPLES};
+use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, SHADOW_SAMPLES};
 use wheatstone_core::scene::{GradientMethod, Mode, Shading};
 
 /// Which pixels a cast visits.
@@ -227,22 +227,25 @@ const LOCKSTEP_ITERATIONS: u32 = 11;
 /// Loop iterations that a sample costs at most. A loop of n counts n + 1: drivers count the one that ends it.
 pub(crate) fn iterations_per_sample(parameters: &CastParameters, leap: &Leap<'_>) -> u32 {
     let leaps = !matches!(leap, Leap::Nothing);
+    match parameters.mode {
+        Mode::Composite if leaps => 2 * LOCKSTEP_ITERATIONS + iterations_of_shading(parameters, leap),
+        Mode::Composite => LOCKSTEP_ITERATIONS + iterations_of_shading(parameters, leap),
+        _ if leaps => LOCKSTEP_ITERATIONS,
+        _ => 1,
+    }
+}
+
+/// Loop iterations that shading a sample costs at most.
+pub(crate) fn iterations_of_shading(parameters: &CastParameters, leap: &Leap<'_>) -> u32 {
+    let leaps = !matches!(leap, Leap::Nothing);
     let along_shading_ray = |samples: u32| {
         if leaps { LOCKSTEP_ITERATIONS * samples + 2 } else { samples + 4 }
     };
-    let shading = match parameters.shading {
+    match parameters.shading {
         Shading::None | Shading::Phong => 0,
         Shading::Shadow => along_shading_ray(SHADOW_SAMPLES),
         Shading::Ambient => AMBIENT_SAMPLES + 1,
-        Shading::Directional { .. } => {
-            parameters.directions.len() as u32 * (along_shading_ray(DIRECTIONAL_STEPS) + 1) + 1
-        }
-    };
-    match parameters.mode {
-        Mode::Composite if leaps => 2 * LOCKSTEP_ITERATIONS + shading,
-        Mode::Composite => LOCKSTEP_ITERATIONS + shading,
-        _ if leaps => LOCKSTEP_ITERATIONS,
-        _ => 1,
+        Shading::Directional { .. } => parameters.directions.len() as u32 + 1,
     }
 }
 

@@ -69,6 +69,7 @@ pub struct Prepared {
     pub(crate) variant: Variant,
     lists_tiles: bool,
     pub(crate) iterations_per_sample: u32,
+    pub(crate) iterations_of_shading: u32,
     pub(crate) view_uniform: wgpu::Buffer,
     pub(crate) frame: wgpu::BindGroup,
     pub(crate) volume: wgpu::BindGroup,
@@ -134,6 +135,7 @@ impl Renderer {
         self.casts.pipeline(gpu, variant)?;
         let Sources { volume, gradient_map, leap } = sources;
         let iterations_per_sample = cast_pass::iterations_per_sample(&parameters, leap);
+        let iterations_of_shading = cast_pass::iterations_of_shading(&parameters, leap);
         let stored = volume.encoding().normalised_from_stored(parameters.window);
         let magnitude_scale = gradient_map.map_or(0.0, |map| map.normalised_from_sampled(stored.0));
         let cast_uniform = CastUniform::new(
@@ -183,7 +185,16 @@ impl Renderer {
             ],
         );
         gpu.check()?;
-        Ok(Prepared { parameters, variant, lists_tiles, iterations_per_sample, view_uniform, frame, volume })
+        Ok(Prepared {
+            parameters,
+            variant,
+            lists_tiles,
+            iterations_per_sample,
+            iterations_of_shading,
+            view_uniform,
+            frame,
+            volume,
+        })
     }
 
     /// Casts each view into its target and waits until all are done.

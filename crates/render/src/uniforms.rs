@@ -81,8 +81,10 @@ pub(crate) struct PairUniform {
     pub(crate) column_count: u32,
     pub(crate) width: u32,
     pub(crate) count: u32,
-    pub(crate) begin: u32,
-    pub(crate) end: u32,
+    pub(crate) iteration_limit: u32,
+    pub(crate) iterations_per_stretch: u32,
+    pub(crate) iterations_per_leap: u32,
+    pub(crate) is_resuming: u32,
     pub(crate) is_mirrored: u32,
 }
 
@@ -99,8 +101,10 @@ impl PairUniform {
             column_count,
             width,
             count: column_count.div_ceil(width),
-            begin: 0,
-            end: width,
+            iteration_limit: u32::MAX,
+            iterations_per_stretch: 0,
+            iterations_per_leap: 0,
+            is_resuming: 0,
             is_mirrored: u32::from(epipolar.is_mirrored()),
         }
     }
@@ -269,7 +273,21 @@ mod tests {
             "lib/pair",
             "Pair",
             PairUniform,
-            [k, offset, furthest, nearest, first_column, column_count, width, count, begin, end, is_mirrored,]
+            [
+                k,
+                offset,
+                furthest,
+                nearest,
+                first_column,
+                column_count,
+                width,
+                count,
+                iteration_limit,
+                iterations_per_stretch,
+                iterations_per_leap,
+                is_resuming,
+                is_mirrored,
+            ]
         );
     }
 }

@@ -1,7 +1,7 @@
 import package::lib::classify::{VALUE_OFFSET, may_be_visible};
-import package::lib::composite::{SEARCHES, STRETCH, blend, finish_ray, is_opaque, start_ray};
+import package::lib::composite::{SEARCHES, blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
-import package::lib::ray_state::{RayState};
+import package::lib::ray_state::{RayState, STRETCH};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::volume::{value_at};
 

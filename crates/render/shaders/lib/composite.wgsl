@@ -6,9 +6,6 @@ import package::lib::shade::{SHADING_IS_DEAR, shade};
 import package::lib::skip::{RUNS_ARE_DENSE};
 import package::lib::volume::{value_at};
 
-// Samples after which neighbouring rays, one of which may wait at a visible sample, are together again.
-const STRETCH: u32 = 16u;
-
 // Whether to search for the next visible sample before blending it: a driver that runs both sides of every branch
 // (software Vulkan) then blends no other. Not worth it where most are visible and blending is cheap.
 const SEARCHES = CLASSIFIER_IS_DEAR || SHADING_IS_DEAR || !RUNS_ARE_DENSE;

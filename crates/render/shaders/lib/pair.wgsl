@@ -16,9 +16,13 @@ struct Pair {
     width: u32,
     // Strips of a row.
     count: u32,
-    // The columns of each strip that a dispatch takes, counted from the strip's last.
-    begin: u32,
-    end: u32,
+    // Loop iterations after which an invocation leaves the rest to the next dispatch.
+    iteration_limit: u32,
+    // Loop iterations that a stretch of samples takes at most, and a read of the skip map.
+    iterations_per_stretch: u32,
+    iterations_per_leap: u32,
+    // 1 where a dispatch goes on from where the last has stopped.
+    is_resuming: u32,
     // 1 where columns count from the right.
     is_mirrored: u32,
 }

@@ -45,3 +45,6 @@ fn pixel_of(color: vec4f, state: RayState) -> Pixel {
 fn opaque_pixel(rgb: vec3f, state: RayState) -> Pixel {
     return pixel_of(vec4f(rgb, 1.0), state);
 }
+
+// Samples after which neighbouring rays, one of which may wait at a visible sample, are together again.
+const STRETCH: u32 = 16u;

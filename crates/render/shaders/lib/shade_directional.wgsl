@@ -1,11 +1,9 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classified::{Classified};
 import package::lib::ray::{Ray};
-import package::lib::shading_ray::{SHADING_STEP, log2_transmittance_along};
+import package::lib::shading_ray::{SHADING_STEP, log2_transmittance_of_four};
 
 const SHADING_IS_DEAR = true;
-
-const STEPS: u32 = 4u;
 
 // Coloured light from each direction, traced for 4 steps (SP Fig. 9), so weighted that no occlusion is white.
 fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
@@ -14,7 +12,7 @@ fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
     for (var i = 0u; i < parameters.direction_count; i++) {
         let direction = parameters.directions[i].xyz;
         let step = parameters.texture_from_metric * (direction * SHADING_STEP);
-        let log2_transmittance = log2_transmittance_along(position, step, STEPS);
+        let log2_transmittance = log2_transmittance_of_four(position, step);
         lit += abs(direction) * exp2(log2_transmittance * SHADING_STEP);
         unoccluded += abs(direction);
     }

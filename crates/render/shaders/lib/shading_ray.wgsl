@@ -14,6 +14,20 @@ fn log2_transmittance_inside(position: vec3f) -> f32 {
     return log2_transmittance_at(position);
 }
 
+// Log2 transmittance of four samples, the first of them a step away from a position: too few to leap, and not in a loop,
+// for drivers limit the iterations of all loops together.
+fn log2_transmittance_of_four(position: vec3f, step: vec3f) -> f32 {
+    return log2_transmittance_if_inside(position + step)
+        + log2_transmittance_if_inside(position + 2.0 * step)
+        + log2_transmittance_if_inside(position + 3.0 * step)
+        + log2_transmittance_if_inside(position + 4.0 * step);
+}
+
+fn log2_transmittance_if_inside(position: vec3f) -> f32 {
+    let log2_transmittance = log2_transmittance_at(position);
+    return select(0.0, log2_transmittance, is_inside(position));
+}
+
 // Log2 transmittance of `count` samples, the first of them a step away from a position.
 fn log2_transmittance_along(position: vec3f, step: vec3f, count: u32) -> f32 {
     if EMPTY_IS_CLEAR {

@@ -2,7 +2,7 @@ import package::lib::pair::{pair};
 
 // What each strip of columns adds to the derived columns that its rays reach.
 
-// Joints of segments; zero at first.
+// Joints of segments.
 @group(3) @binding(1) var<storage, read_write> partials: array<vec4f>;
 // Depth of the first hit of each, metres; of the last segment if they let more light through than that.
 @group(3) @binding(2) var<storage, read_write> partial_depths_m: array<f32>;
@@ -19,4 +19,13 @@ fn first_reached(strip: u32) -> i32 {
 
 fn partial_at(row: u32, strip: u32, column: i32) -> u32 {
     return (row * pair.count + strip) * reach() + u32(column - first_reached(strip));
+}
+
+// Empties the first partial sums of a strip.
+fn empty_partials(row: u32, strip: u32, count: u32) {
+    let first = partial_at(row, strip, first_reached(strip));
+    for (var i = 0u; i < count; i++) {
+        partials[first + i] = vec4f(0.0);
+        partial_depths_m[first + i] = 0.0;
+    }
 }

@@ -3,6 +3,7 @@ import package::lib::cast_segments::{cast_segments};
 import package::lib::pair::{mirrored, pair};
 import package::lib::ray::{ray_through};
 import package::lib::segment_sink::{SegmentPlace};
+import package::lib::segmented_ray::{start_segments};
 import package::lib::target::{store};
 import package::lib::tiles_all::{LANES, pixel_of_lane};
 import package::lib::view::{view};
@@ -22,7 +23,8 @@ fn cast_layers(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     if ray.sample_count == 0u {
         return;
     }
-    let state = cast_segments(ray, SegmentPlace(at.y, column));
+    let place = SegmentPlace(at.y, column);
+    let state = cast_segments(ray, pair.furthest, place, start_segments(ray)).state;
     if x >= 0 && x < i32(view.width) {
         store(vec2u(u32(x), at.y), finish_ray(ray, state));
     }

@@ -3,6 +3,9 @@ import package::lib::cast_segments::{cast_segments};
 import package::lib::pair::{mirrored, pair};
 import package::lib::ray::{ray_through};
 import package::lib::segment_sink::{SegmentPlace};
+import package::lib::segmented_ray::{SegmentedRay, is_spent, leaps, start_segments, stretches};
+import package::lib::strip_bands::{columns_before, last_of, strip_band_at, strips};
+import package::lib::strips::{empty_partials, reach};
 import package::lib::target::{store};
 import package::lib::view::{BAND_ROWS, first_pixel_of_group, view};
 
@@ -10,6 +13,16 @@ import package::lib::view::{BAND_ROWS, first_pixel_of_group, view};
 // Kaufman 1996, without the layers of SP): an invocation owns a row of a strip and goes through its columns from the last to
 // the first, each ray front to back, so that every derived pixel gets its segments front to back.
 
+// A row of a strip between dispatches.
+struct Progress {
+    // Columns that are not finished.
+    left: vec2u,
+    // 1 if the last of them is begun.
+    is_begun: u32,
+    ray: SegmentedRay,
+}
+
+@group(3) @binding(4) var<storage, read_write> progress: array<Progress>;
 @compute @workgroup_size(BAND_ROWS)
 fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let row = first_pixel_of_group(group).y + lane;
@@ -17,20 +30,46 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
         return;
     }
     let strip = group.x;
-    for (var i = pair.begin; i < pair.end; i++) {
-        let offset = strip * pair.width + pair.width - 1u - i;
-        if offset >= pair.column_count {
-            continue;
-        }
-        let column = pair.first_column + i32(offset);
+    let band = strip_band_at(row / BAND_ROWS, strip);
+    let stretches_before = atomicLoad(&strips.bands[band].stretches);
+    let leaps_before = atomicLoad(&strips.bands[band].leaps);
+    let at = row * pair.count + strip;
+    let is_resuming = pair.is_resuming == 1u;
+    var left = strips.bands[band].listed;
+    var under_way: SegmentedRay;
+    var is_begun = false;
+    if is_resuming {
+        left = progress[at].left;
+        under_way = progress[at].ray;
+        is_begun = progress[at].is_begun == 1u;
+    }
+    empty_partials(row, strip, select(reach(), 0u, is_resuming));
+    while any(left != vec2u(0u)) && !is_spent() {
+        let offset = last_of(left);
+        let column = pair.first_column + i32(strip * pair.width + offset);
         let x = mirrored(column, view.width);
         let ray = ray_through(vec2f(f32(x), f32(row)) + 0.5);
-        if ray.sample_count == 0u {
-            continue;
+        if !is_begun {
+            under_way = start_segments(ray);
         }
-        let state = cast_segments(ray, SegmentPlace(row, strip, column));
-        if x >= 0 && x < i32(view.width) {
-            store(vec2u(u32(x), row), finish_ray(ray, state));
+        under_way = cast_segments(ray, pair.furthest, SegmentPlace(row, strip, column), under_way);
+        is_begun = under_way.state.is_finished == 0u;
+        if !is_begun {
+            left &= columns_before(offset);
+            if x >= 0 && x < i32(view.width) && ray.sample_count > 0u {
+                store(vec2u(u32(x), row), finish_ray(ray, under_way.state));
+            }
         }
+        // Rows that run in lockstep have waited for the one that has done the most; all of them end together.
+        atomicMax(&strips.bands[band].stretches, stretches_before + stretches);
+        atomicMax(&strips.bands[band].leaps, leaps_before + leaps);
+        stretches = atomicLoad(&strips.bands[band].stretches) - stretches_before;
+        leaps = atomicLoad(&strips.bands[band].leaps) - leaps_before;
+    }
+    if any(left != vec2u(0u)) {
+        progress[at] = Progress(left, select(0u, 1u, is_begun), under_way);
+        atomicAdd(&strips.unfinished, 1u);
+    } else {
+        progress[at].left = vec2u(0u);
     }
 }

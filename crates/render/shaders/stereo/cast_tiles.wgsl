@@ -1,10 +1,11 @@
-import package::lib::accumulate::{finish_ray, start_ray};
-import package::lib::cast_segments::{cast_slabs};
+import package::lib::accumulate::{finish_ray};
+import package::lib::cast_segments::{cast_segments};
 import package::lib::join::{join};
 import package::lib::pair::{mirrored, pair};
 import package::lib::ray::{ray_through};
 import package::lib::ray_state::{FIRST_HIT_ALPHA};
 import package::lib::segment_sink::{ROUND_SLABS, SegmentPlace, TILE_COLUMNS, empty_slots, segment_depths_m, segments, slot_at};
+import package::lib::segmented_ray::{start_segments};
 import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
 import package::lib::target::{store};
 import package::lib::view::{first_pixel_of_group, view};
@@ -23,17 +24,17 @@ fn cast_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
     if offset >= pair.column_count || row >= view.first_row + view.row_count {
         ray.sample_count = 0u;
     }
-    var state = start_ray(ray);
+    var under_way = start_segments(ray);
     for (var nearest = pair.nearest; nearest >= pair.furthest; nearest -= i32(ROUND_SLABS)) {
         empty_slots(lane);
         let furthest = max(nearest - i32(ROUND_SLABS) + 1, pair.furthest);
-        state = cast_slabs(ray, nearest, furthest, state, SegmentPlace(lane, nearest));
+        under_way = cast_segments(ray, furthest, SegmentPlace(lane, nearest), under_way);
         workgroupBarrier();
         composite_round(row, tile, lane, nearest);
         workgroupBarrier();
     }
     if ray.sample_count > 0u && x >= 0 && x < i32(view.width) {
-        store(vec2u(u32(x), row), finish_ray(ray, state));
+        store(vec2u(u32(x), row), finish_ray(ray, under_way.state));
     }
 }
 

@@ -87,6 +87,7 @@ impl LayerPass {
     /// Makes a pair.
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
         let PairFrame { gpu, prepared, epipolar, slabs, columns, .. } = frame;
+        frame.check_whole_rays()?;
         let bytes = slabs.layer_bytes(frame.size(), self.format.bytes_per_pixel());
         let pipeline = self.cast.pipeline(gpu, prepared.variant)?;
         let composite_pipeline = self.composite.pipeline(gpu, prepared.variant)?;

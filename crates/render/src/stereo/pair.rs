@@ -38,8 +38,6 @@ pub(crate) struct PairFrame<'a> {
     pub(crate) slabs: SlabRange,
     /// Sweep columns of the rays that meet the volume and that either picture needs.
     pub(crate) columns: Range<i32>,
-    /// Rays that a driver takes one after the other in a dispatch.
-    pub(crate) most_rays: u32,
     /// Squares of pixels that the volume covers, in the reference picture and in the derived one.
     covered: [Squares; 2],
     targets: [wgpu::BindGroup; 2],
@@ -104,14 +102,6 @@ impl Renderer {
         if columns.is_empty() {
             return Ok(None);
         }
-        let samples = parameters.most_samples_per_ray();
-        let iterations_per_ray = samples
-            .saturating_mul(prepared.iterations_per_sample)
-            .saturating_add(LOCKSTEP_RAYS * slabs.layers());
-        let most_rays = ITERATION_LIMIT / iterations_per_ray;
-        if most_rays == 0 {
-            return Err(PairError::LongRays { samples });
-        }
         // Rows correspond: nothing is derived where no ray of the reference eye is.
         let [reference, derived] =
             [epipolar.reference(), epipolar.derived()].map(|view| Squares::covered(view, &corners));
@@ -121,7 +111,6 @@ impl Renderer {
             epipolar,
             slabs,
             columns,
-            most_rays,
             covered: [reference.clone(), Squares { bands: reference.bands, ..derived }],
             targets: targets.map(|target| self.target_group(gpu, target, self.unused.each_ref())),
         }))
@@ -136,6 +125,18 @@ impl PairFrame<'_> {
     /// Width and height of both pictures, pixels.
     pub(crate) fn size(&self) -> [u32; 2] {
         self.epipolar.reference().size
+    }
+
+    /// Checks that a driver takes the rays each in one dispatch.
+    ///
+    /// # Errors
+    /// [`PairError::LongRays`] if not.
+    pub(crate) fn check_whole_rays(&self) -> Result<(), PairError> {
+        let samples = self.parameters().most_samples_per_ray();
+        let iterations = samples
+            .saturating_mul(self.prepared.iterations_per_sample)
+            .saturating_add(LOCKSTEP_RAYS * self.slabs.layers());
+        if iterations > ITERATION_LIMIT { Err(PairError::LongRays { samples }) } else { Ok(()) }
     }
 
     /// Squares of `BAND_ROWS` pixels, along x and y, that the volume covers in a picture.

@@ -6,55 +6,96 @@
 use super::PairError;
 use super::pair::{Eye, PairFrame, PairReport};
 use crate::cast_pass::VariantPipelines;
-use crate::gpu::GpuError;
+use crate::gpu::{Gpu, GpuError};
 use crate::groups::{GroupLayouts, bind, layout, read_only_storage, storage_buffer};
+use crate::pacer::{BAND_ROWS, ITERATION_LIMIT};
+use crate::readback::read_buffer;
 use crate::uniforms::PairUniform;
-use std::ops::Range;
 use std::time::Duration;
 
-/// Columns of a strip. More of them overlap less, fewer keep more processors busy.
+/// Columns of a strip: two words of `lib/strip_bands.wgsl`. More of them overlap less, fewer keep more processors busy.
 const STRIP_COLUMNS: u32 = 64;
 
-/// Bytes of what a strip leaves for a derived pixel: RGBA, and the depth of the first hit.
-const PARTIAL_BYTES: [u64; 2] = [16, 4];
+/// Bytes of what a strip leaves for a derived pixel: RGBA.
+const COLOR_BYTES: u64 = 16;
 
-/// Pipelines.
+/// Bytes of what it leaves besides: the depth of the first hit.
+const DEPTH_BYTES: u64 = 4;
+
+/// Bytes of a row of a strip between dispatches: `Progress` of `cast_strips.wgsl`.
+const PROGRESS_BYTES: u64 = 128;
+
+/// Loop iterations of an invocation after which a GPU's dispatch ends, so that none runs for seconds.
+const GPU_ITERATIONS: u32 = 1 << 18;
+
+/// Samples of a stretch: `STRETCH` of `lib/ray_state.wgsl`.
+const STRETCH: u32 = 16;
+
+/// Rays that software Vulkan casts in lockstep.
+const LOCKSTEP_RAYS: u32 = 8;
+
+/// Bytes of a strip in a band of rows, and of what stands before all: `Strips` of `lib/strip_bands.wgsl`.
+const BAND_BYTES: u64 = 16;
+
+/// Pipelines, and the buffers of the last pair.
 #[derive(Debug)]
 pub(crate) struct StripPass {
     strip_layout: wgpu::BindGroupLayout,
+    list: VariantPipelines,
     cast: VariantPipelines,
     merge: VariantPipelines,
+    kept: Option<StripBuffers>,
 }
 
 impl StripPass {
     /// Nothing built yet.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
-        let types = [read_only_storage::<PairUniform>(), storage_buffer(16), storage_buffer(4)];
+        let types = [
+            read_only_storage::<PairUniform>(),
+            storage_buffer(COLOR_BYTES),
+            storage_buffer(DEPTH_BYTES),
+            storage_buffer(2 * BAND_BYTES),
+            storage_buffer(PROGRESS_BYTES),
+        ];
         let strip_layout = layout(device, "strips", &types);
         let layout = groups.pipeline_layout(device, "strips", Some(&strip_layout));
         let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", &[]);
+        let list = VariantPipelines::new(layout.clone(), "stereo/list_columns", "list_columns", &[]);
         let cast = VariantPipelines::new(
             layout,
             "stereo/cast_strips",
             "cast_strips",
             &[("lib/segment_sink", "stereo/sink_strips")],
         );
-        Self { strip_layout, cast, merge }
+        Self { strip_layout, list, cast, merge, kept: None }
     }
 
     /// Makes a pair.
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
+        let strips = PairUniform {
+            iteration_limit: iteration_limit(frame)?,
+            iterations_per_stretch: iterations_per_stretch(frame),
+            iterations_per_leap: LOCKSTEP_RAYS,
+            ..PairUniform::new(frame.epipolar, frame.slabs, &frame.columns, STRIP_COLUMNS)
+        };
+        let list = self.list.pipeline(frame.gpu, frame.prepared.variant)?;
         let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
         let merge = self.merge.pipeline(frame.gpu, frame.prepared.variant)?;
-        let buffers = self.buffers(frame)?;
+        let buffers = self.buffers(frame, &strips)?;
         let bindings = frame.bind(Eye::Reference);
-        let mut cast = Duration::ZERO;
-        for columns in buffers.columns(frame.most_rays) {
-            buffers.take(&frame.gpu.queue, &columns);
+        let [_, bands] = frame.squares(Eye::Reference);
+        buffers.begin(&frame.gpu.queue, &strips);
+        let mut cast = frame.run(|encoder| {
+            let mut pass = bindings.begin_pass(encoder, &list, Some(&buffers.group));
+            pass.dispatch_workgroups(strips.count, bands, 1);
+            pass.set_pipeline(&pipeline);
+            pass.dispatch_workgroups(strips.count, bands, 1);
+        })?;
+        while buffers.is_unfinished(frame.gpu)? {
+            buffers.begin(&frame.gpu.queue, &PairUniform { is_resuming: 1, ..strips });
             cast += frame.run(|encoder| {
                 let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&buffers.group));
-                let [_, bands] = frame.squares(Eye::Reference);
-                pass.dispatch_workgroups(buffers.strips.count, bands, 1);
+                pass.dispatch_workgroups(strips.count, bands, 1);
             })?;
         }
         let bindings = frame.bind(Eye::Derived);
@@ -63,19 +104,48 @@ impl StripPass {
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
             pass.dispatch_workgroups(squares_x, squares_y, 1);
         })?;
-        Ok(PairReport { bytes: buffers.byte_size, clear: Duration::ZERO, cast, composite })
+        let bytes = buffers.sizes.iter().sum();
+        self.kept = Some(buffers);
+        Ok(PairReport { bytes, clear: Duration::ZERO, cast, composite })
     }
 
-    /// Room for the partial sums of a pair; empty.
-    fn buffers(&self, frame: &PairFrame<'_>) -> Result<StripBuffers, GpuError> {
-        let PairFrame { gpu, epipolar, slabs, .. } = frame;
-        let strips = PairUniform::new(epipolar, *slabs, &frame.columns, STRIP_COLUMNS);
-        let height = u64::from(frame.size()[1]);
-        let slots = height * u64::from(strips.count) * u64::from(STRIP_COLUMNS + slabs.layers() - 1);
+    /// Room for a pair: that of the last pair if it is large enough. Each strip empties its own sums.
+    fn buffers(&mut self, frame: &PairFrame<'_>, strips: &PairUniform) -> Result<StripBuffers, GpuError> {
+        let height = frame.size()[1];
+        let strip_rows = u64::from(height) * u64::from(strips.count);
+        let sums = strip_rows * u64::from(STRIP_COLUMNS + frame.slabs.layers() - 1);
+        let strip_bands = u64::from(height.div_ceil(BAND_ROWS)) * u64::from(strips.count);
+        let sizes = [
+            sums * COLOR_BYTES,
+            sums * DEPTH_BYTES,
+            (1 + strip_bands) * BAND_BYTES,
+            strip_rows * PROGRESS_BYTES,
+        ];
+        let is_enough = |kept: &StripBuffers| kept.sizes.iter().zip(&sizes).all(|(kept, size)| kept >= size);
+        match self.kept.take().filter(is_enough) {
+            Some(kept) => Ok(kept),
+            None => StripBuffers::new(frame.gpu, &self.strip_layout, sizes),
+        }
+    }
+}
+
+/// Partial sums of pairs of pictures.
+#[derive(Debug)]
+struct StripBuffers {
+    /// Bytes of colours, depths, strips in bands and progress.
+    sizes: [u64; 4],
+    pair: wgpu::Buffer,
+    bands: wgpu::Buffer,
+    /// Where the host reads how many rows of strips are not finished.
+    unfinished: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl StripBuffers {
+    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, sizes: [u64; 4]) -> Result<Self, GpuError> {
         let limits = gpu.device.limits();
         let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        if slots * PARTIAL_BYTES[0] > largest {
-            let bytes = slots * PARTIAL_BYTES[0];
+        if let Some(bytes) = sizes.into_iter().find(|&bytes| bytes > largest) {
             return Err(GpuError::Refused {
                 reason: format!("{bytes} bytes of partial sums for stereo; its buffers hold {largest}"),
             });
@@ -88,40 +158,58 @@ impl StripPass {
                 mapped_at_creation: false,
             })
         };
-        let uniform_usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-        let uniform = buffer("strips", size_of::<PairUniform>() as u64, uniform_usage);
-        let [partials, depths_m] =
-            PARTIAL_BYTES.map(|bytes| buffer("partial sums", slots * bytes, wgpu::BufferUsages::STORAGE));
+        let copied_to = wgpu::BufferUsages::COPY_DST;
+        let storage = wgpu::BufferUsages::STORAGE | copied_to | wgpu::BufferUsages::COPY_SRC;
+        let pair = buffer("pair", size_of::<PairUniform>() as u64, storage);
+        let kept = sizes.map(|size| buffer("strips", size, storage));
+        let unfinished = buffer("unfinished strips", 4, copied_to | wgpu::BufferUsages::MAP_READ);
+        let [colors, depths_m, bands, progress] = &kept;
         let group = bind(
             &gpu.device,
-            &self.strip_layout,
-            &[uniform.as_entire_binding(), partials.as_entire_binding(), depths_m.as_entire_binding()],
+            layout,
+            &[&pair, colors, depths_m, bands, progress].map(wgpu::Buffer::as_entire_binding),
         );
         gpu.check()?;
-        let byte_size = slots * PARTIAL_BYTES.iter().sum::<u64>();
-        Ok(StripBuffers { strips, uniform, group, byte_size })
+        let [.., bands, _] = kept;
+        Ok(Self { sizes, pair, bands, unfinished, group })
+    }
+
+    /// Says what the next dispatch is to do.
+    fn begin(&self, queue: &wgpu::Queue, strips: &PairUniform) {
+        queue.write_buffer(&self.pair, 0, bytemuck::bytes_of(strips));
+        queue.write_buffer(&self.bands, 0, bytemuck::bytes_of(&0_u32));
+    }
+
+    /// Whether the last dispatch has left anything to the next.
+    fn is_unfinished(&self, gpu: &Gpu) -> Result<bool, GpuError> {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(&self.bands, 0, &self.unfinished, 0, 4);
+        gpu.queue.submit([encoder.finish()]);
+        let count: u32 = read_buffer(gpu, &self.unfinished, bytemuck::pod_read_unaligned)?;
+        self.unfinished.unmap();
+        Ok(count > 0)
     }
 }
 
-/// Partial sums of one pair of pictures.
-#[derive(Debug)]
-struct StripBuffers {
-    strips: PairUniform,
-    uniform: wgpu::Buffer,
-    group: wgpu::BindGroup,
-    byte_size: u64,
+/// Loop iterations that a stretch of samples takes at most: each sample's, a new slab's, and those that end the loops.
+fn iterations_per_stretch(frame: &PairFrame<'_>) -> u32 {
+    STRETCH * (frame.prepared.iterations_of_shading + 5) + 4
 }
 
-impl StripBuffers {
-    /// Ranges of columns, counted from the last of each strip, that one dispatch each takes: no more than a number of them.
-    fn columns(&self, most: u32) -> impl Iterator<Item = Range<u32>> + use<> {
-        let step = most.clamp(1, STRIP_COLUMNS);
-        (0..STRIP_COLUMNS).step_by(step as usize).map(move |begin| begin..(begin + step).min(STRIP_COLUMNS))
+/// Loop iterations after which an invocation leaves the rest to the next dispatch.
+///
+/// Software Vulkan counts the iterations of eight invocations in lockstep: as many as that one has which does the most. An
+/// invocation looks at its own after each stretch of samples.
+///
+/// # Errors
+/// [`PairError::LongRays`] if a stretch may take more than there are.
+fn iteration_limit(frame: &PairFrame<'_>) -> Result<u32, PairError> {
+    if !frame.gpu.description().is_software {
+        return Ok(GPU_ITERATIONS);
     }
-
-    /// Chooses what the next dispatch takes of each strip.
-    fn take(&self, queue: &wgpu::Queue, columns: &Range<u32>) {
-        let strips = PairUniform { begin: columns.start, end: columns.end, ..self.strips };
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&strips));
-    }
+    let samples = frame.parameters().most_samples_per_ray();
+    let besides =
+        iterations_per_stretch(frame) + LOCKSTEP_RAYS * samples + 3 * STRIP_COLUMNS + frame.slabs.layers();
+    let limit = ITERATION_LIMIT.saturating_sub(besides);
+    if limit == 0 { Err(PairError::LongRays { samples }) } else { Ok(limit) }
 }

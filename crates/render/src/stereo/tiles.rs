@@ -50,6 +50,7 @@ impl PairTilePass {
 
     /// Makes a pair.
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
+        frame.check_whole_rays()?;
         let PairFrame { gpu, epipolar, slabs, columns, .. } = frame;
         let pipeline = self.cast.pipeline(gpu, frame.prepared.variant)?;
         let merge = self.merge.pipeline(gpu, frame.prepared.variant)?;
