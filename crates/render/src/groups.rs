@@ -129,11 +129,6 @@ pub(crate) fn uniform<T>() -> wgpu::BindingType {
     buffer(wgpu::BufferBindingType::Uniform, size_of::<T>() as u64)
 }
 
-/// A buffer that a shader reads a `T` from.
-pub(crate) fn read_only_storage<T>() -> wgpu::BindingType {
-    buffer(wgpu::BufferBindingType::Storage { read_only: true }, size_of::<T>() as u64)
-}
-
 fn buffer(ty: wgpu::BufferBindingType, smallest: u64) -> wgpu::BindingType {
     wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: NonZeroU64::new(smallest) }
 }

@@ -34,7 +34,6 @@ impl Target {
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage: wgpu::TextureUsages::STORAGE_BINDING
-                    | wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
@@ -53,24 +52,9 @@ impl Target {
 
     /// Encodes the blank picture: nothing hit, no samples.
     pub(crate) fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
-        let views = [&self.color, &self.depth]
-            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-        let attachments = views.each_ref().map(|view| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })
-        });
-        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("blank picture"),
-            color_attachments: &attachments,
-            ..Default::default()
-        });
+        for texture in [&self.color, &self.depth] {
+            encoder.clear_texture(texture, &wgpu::ImageSubresourceRange::default());
+        }
     }
 
     /// Reads the picture back.

@@ -67,6 +67,8 @@ pub(crate) struct ViewUniform {
     pub(crate) sample_limit: u32,
     pub(crate) band_stride: u32,
     pub(crate) first_column: u32,
+    pub(crate) pair: PairUniform,
+    pub(crate) padding: [u32; 3],
 }
 
 /// Mirror of `lib/pair.wgsl`, where the fields are described.
@@ -82,8 +84,8 @@ pub(crate) struct PairUniform {
     pub(crate) width: u32,
     pub(crate) count: u32,
     pub(crate) iteration_limit: u32,
-    pub(crate) iterations_per_stretch: u32,
-    pub(crate) iterations_per_leap: u32,
+    pub(crate) iterations_of_shading: u32,
+    pub(crate) lockstep_rays: u32,
     pub(crate) is_resuming: u32,
     pub(crate) is_mirrored: u32,
 }
@@ -102,8 +104,8 @@ impl PairUniform {
             width,
             count: column_count.div_ceil(width),
             iteration_limit: u32::MAX,
-            iterations_per_stretch: 0,
-            iterations_per_leap: 0,
+            iterations_of_shading: 0,
+            lockstep_rays: 0,
             is_resuming: 0,
             is_mirrored: u32::from(epipolar.is_mirrored()),
         }
@@ -179,6 +181,8 @@ impl ViewUniform {
             sample_limit: u32::MAX,
             band_stride: 1,
             first_column: 0,
+            pair: PairUniform::zeroed(),
+            padding: [0; 3],
         }
     }
 }
@@ -263,6 +267,7 @@ mod tests {
                 sample_limit,
                 band_stride,
                 first_column,
+                pair,
             ]
         );
     }
@@ -283,8 +288,8 @@ mod tests {
                 width,
                 count,
                 iteration_limit,
-                iterations_per_stretch,
-                iterations_per_leap,
+                iterations_of_shading,
+                lockstep_rays,
                 is_resuming,
                 is_mirrored,
             ]

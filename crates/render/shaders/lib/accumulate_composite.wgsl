@@ -5,6 +5,9 @@ import package::lib::ray_state::{RayState, STRETCH};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::volume::{value_at};
 
+// Loop iterations of a sample at most, without those of its shading: of the search, or of slabs and samples.
+const ITERATIONS_PER_SAMPLE = select(3u, 5u, SEARCHES);
+
 // Front-to-back emission and absorption.
 fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
     let walk = start_walk(ray.first, ray.step);

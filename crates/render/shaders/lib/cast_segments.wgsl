@@ -1,13 +1,13 @@
+import package::lib::cast_parameters::{parameters};
 import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{SEARCHES, blend};
-import package::lib::cast_parameters::{parameters};
-import package::lib::pair::{pair};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, RayState, STRETCH};
 import package::lib::segment_sink::{SegmentPlace, put_segment};
 import package::lib::segmented_ray::{SegmentedRay, is_spent, leaps, stretches};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::slabs::{end_of_slab, slab_at};
+import package::lib::view::{view};
 import package::lib::volume::{value_at};
 
 // Rays of the reference view cut into segments, one for each slab of depth: all samples of a slab land on the same derived
@@ -32,7 +32,7 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
     var state = before.state;
     var segment = before.segment;
     var slab = before.slab;
-    var slab_end = select(end_of_slab(ray, slab), 0u, slab > pair.nearest);
+    var slab_end = select(end_of_slab(ray, slab), 0u, slab > view.pair.nearest);
     var run_end = 0u;
     var i = before.next;
     while i < end && state.is_finished == 0u && !is_spent() {

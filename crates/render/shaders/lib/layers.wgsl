@@ -1,7 +1,7 @@
-import package::lib::pair::{pair};
+import package::lib::view::{view};
 
 // As many layers as slabs: no two reference rays of a row that share one reach the same derived pixel (SP Alg. 1).
 
 fn layer_of(column: i32) -> i32 {
-    return (column - pair.first_column) % (pair.nearest - pair.furthest + 1);
+    return (column - view.pair.first_column) % (view.pair.nearest - view.pair.furthest + 1);
 }

@@ -1,4 +1,4 @@
-// Mirror of `uniforms::PairUniform`. Columns are sweep columns: nearer is further left in the derived picture.
+// Mirror of `uniforms::PairUniform`: what a pair of views has in common. Columns are sweep columns: nearer is further left in the derived picture.
 
 struct Pair {
     // Disparity times depth, pixels and metres.
@@ -18,19 +18,12 @@ struct Pair {
     count: u32,
     // Loop iterations after which an invocation leaves the rest to the next dispatch.
     iteration_limit: u32,
-    // Loop iterations that a stretch of samples takes at most, and a read of the skip map.
-    iterations_per_stretch: u32,
-    iterations_per_leap: u32,
+    // Loop iterations that shading a sample takes at most.
+    iterations_of_shading: u32,
+    // Rays that leap in turn, each waiting for the others.
+    lockstep_rays: u32,
     // 1 where a dispatch goes on from where the last has stopped.
     is_resuming: u32,
     // 1 where columns count from the right.
     is_mirrored: u32,
-}
-
-// Not uniform: Mesa 22's software Vulkan crashes on branches and loops that depend on a uniform buffer after the third.
-@group(3) @binding(0) var<storage, read> pair: Pair;
-
-// From a column of a picture to the sweep column, and back.
-fn mirrored(column: i32, picture_width: u32) -> i32 {
-    return select(column, i32(picture_width) - 1 - column, pair.is_mirrored == 1u);
 }

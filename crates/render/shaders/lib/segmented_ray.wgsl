@@ -1,7 +1,7 @@
-import package::lib::accumulate::{start_ray};
-import package::lib::pair::{pair};
+import package::lib::accumulate::{ITERATIONS_PER_SAMPLE, start_ray};
 import package::lib::ray::{Ray};
-import package::lib::ray_state::{RayState};
+import package::lib::ray_state::{RayState, STRETCH};
+import package::lib::view::{view};
 
 // A ray on its way through the slabs, and how far an invocation may take it.
 
@@ -20,13 +20,18 @@ struct SegmentedRay {
 var<private> stretches: u32;
 var<private> leaps: u32;
 
+// Iterations that end the loops of a stretch.
+const ITERATIONS_PER_STRETCH: u32 = 4u;
+
 // Whether the iterations of its loops may have come near the limit.
 fn is_spent() -> bool {
-    return stretches * pair.iterations_per_stretch + leaps * pair.iterations_per_leap >= pair.iteration_limit;
+    let of_samples = STRETCH * (ITERATIONS_PER_SAMPLE + view.pair.iterations_of_shading);
+    let of_stretches = stretches * (of_samples + ITERATIONS_PER_STRETCH);
+    return of_stretches + leaps * view.pair.lockstep_rays >= view.pair.iteration_limit;
 }
 
 fn start_segments(ray: Ray) -> SegmentedRay {
     var state = start_ray(ray);
     state.is_finished = select(0u, 1u, ray.sample_count == 0u);
-    return SegmentedRay(0u, pair.nearest + 1, state, state);
+    return SegmentedRay(0u, view.pair.nearest + 1, state, state);
 }

@@ -1,4 +1,4 @@
-import package::lib::pair::{pair};
+import package::lib::view::{view};
 
 // Columns of a strip of which some ray of a band of rows may meet something.
 
@@ -20,10 +20,10 @@ struct Strips {
     bands: array<StripBand>,
 }
 
-@group(3) @binding(3) var<storage, read_write> strips: Strips;
+@group(3) @binding(2) var<storage, read_write> strips: Strips;
 
 fn strip_band_at(band: u32, strip: u32) -> u32 {
-    return band * pair.count + strip;
+    return band * view.pair.count + strip;
 }
 
 // The bits of the columns before one, counted from the strip's first.

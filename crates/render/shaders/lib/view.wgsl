@@ -1,3 +1,5 @@
+import package::lib::pair::{Pair};
+
 // Mirror of `uniforms::ViewUniform`: the rays of a view, affine in the pixel coordinates, in texture space.
 
 struct View {
@@ -33,6 +35,11 @@ struct View {
     band_stride: u32,
     // First column of the piece that is cast.
     first_column: u32,
+    // What the view has in common with the one that is derived from its rays; zeros where none is.
+    //
+    // Not in a buffer of its own: Mesa 22's software Vulkan crashes on branches and loops that depend on a uniform buffer after
+    // the third, and is slower where they depend on a storage buffer.
+    pair: Pair,
 }
 
 // Rows of a band: the side of the square of pixels that a workgroup takes; `BAND_ROWS` of the host.

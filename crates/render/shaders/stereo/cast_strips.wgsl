@@ -1,6 +1,6 @@
 import package::lib::accumulate::{finish_ray};
 import package::lib::cast_segments::{cast_segments};
-import package::lib::pair::{mirrored, pair};
+import package::lib::mirrored::{mirrored};
 import package::lib::ray::{ray_through};
 import package::lib::segment_sink::{SegmentPlace};
 import package::lib::segmented_ray::{SegmentedRay, is_spent, leaps, start_segments, stretches};
@@ -22,7 +22,7 @@ struct Progress {
     ray: SegmentedRay,
 }
 
-@group(3) @binding(4) var<storage, read_write> progress: array<Progress>;
+@group(3) @binding(3) var<storage, read_write> progress: array<Progress>;
 @compute @workgroup_size(BAND_ROWS)
 fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let row = first_pixel_of_group(group).y + lane;
@@ -33,8 +33,8 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     let band = strip_band_at(row / BAND_ROWS, strip);
     let stretches_before = atomicLoad(&strips.bands[band].stretches);
     let leaps_before = atomicLoad(&strips.bands[band].leaps);
-    let at = row * pair.count + strip;
-    let is_resuming = pair.is_resuming == 1u;
+    let at = row * view.pair.count + strip;
+    let is_resuming = view.pair.is_resuming == 1u;
     var left = strips.bands[band].listed;
     var under_way: SegmentedRay;
     var is_begun = false;
@@ -46,13 +46,13 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     empty_partials(row, strip, select(reach(), 0u, is_resuming));
     while any(left != vec2u(0u)) && !is_spent() {
         let offset = last_of(left);
-        let column = pair.first_column + i32(strip * pair.width + offset);
-        let x = mirrored(column, view.width);
+        let column = view.pair.first_column + i32(strip * view.pair.width + offset);
+        let x = mirrored(column);
         let ray = ray_through(vec2f(f32(x), f32(row)) + 0.5);
         if !is_begun {
             under_way = start_segments(ray);
         }
-        under_way = cast_segments(ray, pair.furthest, SegmentPlace(row, strip, column), under_way);
+        under_way = cast_segments(ray, view.pair.furthest, SegmentPlace(row, strip, column), under_way);
         is_begun = under_way.state.is_finished == 0u;
         if !is_begun {
             left &= columns_before(offset);

@@ -1,7 +1,7 @@
 import package::lib::accumulate::{finish_ray};
 import package::lib::cast_segments::{cast_segments};
 import package::lib::join::{join};
-import package::lib::pair::{mirrored, pair};
+import package::lib::mirrored::{mirrored};
 import package::lib::ray::{ray_through};
 import package::lib::ray_state::{FIRST_HIT_ALPHA};
 import package::lib::segment_sink::{ROUND_SLABS, SegmentPlace, TILE_COLUMNS, empty_slots, segment_depths_m, segments, slot_at};
@@ -19,15 +19,15 @@ fn cast_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
     let tile = group.x;
     let row = first_pixel_of_group(group).y + group.z;
     let offset = tile * TILE_COLUMNS + lane;
-    let x = mirrored(pair.first_column + i32(offset), view.width);
+    let x = mirrored(view.pair.first_column + i32(offset));
     var ray = ray_through(vec2f(f32(x), f32(row)) + 0.5);
-    if offset >= pair.column_count || row >= view.first_row + view.row_count {
+    if offset >= view.pair.column_count || row >= view.first_row + view.row_count {
         ray.sample_count = 0u;
     }
     var under_way = start_segments(ray);
-    for (var nearest = pair.nearest; nearest >= pair.furthest; nearest -= i32(ROUND_SLABS)) {
+    for (var nearest = view.pair.nearest; nearest >= view.pair.furthest; nearest -= i32(ROUND_SLABS)) {
         empty_slots(lane);
-        let furthest = max(nearest - i32(ROUND_SLABS) + 1, pair.furthest);
+        let furthest = max(nearest - i32(ROUND_SLABS) + 1, view.pair.furthest);
         under_way = cast_segments(ray, furthest, SegmentPlace(lane, nearest), under_way);
         workgroupBarrier();
         composite_round(row, tile, lane, nearest);
@@ -41,7 +41,7 @@ fn cast_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
 // Puts the segments of a round behind what the rounds before have left in the derived columns that both reach. A lane always
 // takes the same columns.
 fn composite_round(row: u32, tile: u32, lane: u32, nearest: i32) {
-    let first = u32(pair.nearest - nearest);
+    let first = u32(view.pair.nearest - nearest);
     let end = min(first + TILE_COLUMNS + ROUND_SLABS - 1u, reach());
     let columns_before_lane = (first + TILE_COLUMNS - 1u - lane) / TILE_COLUMNS * TILE_COLUMNS;
     for (var reached = columns_before_lane + lane; reached < end; reached += TILE_COLUMNS) {

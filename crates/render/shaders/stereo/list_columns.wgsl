@@ -1,7 +1,7 @@
-import package::lib::strip_bands::{WORD_COLUMNS, strip_band_at, strips};
-import package::lib::pair::{mirrored, pair};
+import package::lib::mirrored::{mirrored};
 import package::lib::ray::{ray_through};
 import package::lib::skip::{next_run, start_walk};
+import package::lib::strip_bands::{WORD_COLUMNS, strip_band_at, strips};
 import package::lib::view::{BAND_ROWS, view};
 
 // Lists the columns of each band of rows of which some ray may meet something: a workgroup takes one strip.
@@ -10,11 +10,11 @@ var<workgroup> words: array<atomic<u32>, 2>;
 
 @compute @workgroup_size(2u * WORD_COLUMNS)
 fn list_columns(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let offset = group.x * pair.width + lane;
+    let offset = group.x * view.pair.width + lane;
     let first_row = view.first_row + group.y * BAND_ROWS;
     let end_row = min(first_row + BAND_ROWS, view.first_row + view.row_count);
-    let x = f32(mirrored(pair.first_column + i32(offset), view.width)) + 0.5;
-    var is_found = offset >= pair.column_count;
+    let x = f32(mirrored(view.pair.first_column + i32(offset))) + 0.5;
+    var is_found = offset >= view.pair.column_count;
     var row = first_row;
     while row < end_row && !is_found {
         let ray = ray_through(vec2f(x, f32(row) + 0.5));
@@ -22,7 +22,7 @@ fn list_columns(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         is_found = run.begin < run.end;
         row++;
     }
-    if is_found && offset < pair.column_count {
+    if is_found && offset < view.pair.column_count {
         atomicOr(&words[lane / WORD_COLUMNS], 1u << (lane % WORD_COLUMNS));
     }
     workgroupBarrier();

@@ -1,6 +1,6 @@
 import package::lib::join::{color_of, join};
+import package::lib::mirrored::{mirrored};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, Pixel};
-import package::lib::pair::{mirrored, pair};
 import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
 import package::lib::target::{store};
 import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece, view};
@@ -13,11 +13,11 @@ fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     if is_outside_piece(pixel) {
         return;
     }
-    let column = mirrored(i32(pixel.x), view.width);
-    let width = i32(pair.width);
+    let column = mirrored(i32(pixel.x));
+    let width = i32(view.pair.width);
     // Strips whose reach holds the column: first_reached(strip) <= column < first_reached(strip) + reach().
     let from_first = column - first_reached(0u);
-    let last = select(-1, min(from_first / width, i32(pair.count) - 1), from_first >= 0);
+    let last = select(-1, min(from_first / width, i32(view.pair.count) - 1), from_first >= 0);
     let first = max((from_first - i32(reach()) + width) / width, 0);
     var joint = vec4f(0.0);
     var depth_m = NOTHING_HIT;

@@ -49,6 +49,7 @@ files! {
     "lib/occupy_value",
     "lib/occupy_value_gradient",
     "lib/occupy_voxels",
+    "lib/mirrored",
     "lib/pack_r16float_of_16bit",
     "lib/pack_r16float_of_8bit",
     "lib/pack_r16unorm",

@@ -6,10 +6,9 @@
 use super::pair::{Eye, PairFrame, PairReport};
 use super::{LayerFormat, PairError};
 use crate::cast_pass::VariantPipelines;
-use crate::groups::{GroupLayouts, bind, layout, read_only_storage};
+use crate::groups::{GroupLayouts, bind, layout};
 use crate::pacer::BAND_ROWS;
 use crate::uniforms::PairUniform;
-use wgpu::util::DeviceExt as _;
 
 impl LayerFormat {
     fn texture_format(self) -> wgpu::TextureFormat {
@@ -66,8 +65,8 @@ impl LayerPass {
             view_dimension,
             multisampled: false,
         };
-        let [cast_layout, composite_layout] = [written, read]
-            .map(|texture| layout(device, "layers", &[read_only_storage::<PairUniform>(), texture]));
+        let [cast_layout, composite_layout] =
+            [written, read].map(|texture| layout(device, "layers", &[texture]));
         let pipeline_layout = |own| groups.pipeline_layout(device, "layers", Some(own));
         let composite = VariantPipelines::new(
             pipeline_layout(&composite_layout),
@@ -97,26 +96,19 @@ impl LayerPass {
         })?;
 
         let pair = PairUniform::new(epipolar, *slabs, columns, BAND_ROWS);
-        let pair_buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("layers"),
-            contents: bytemuck::bytes_of(&pair),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
         let view = layers.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        let [cast_group, composite_group] = [&self.cast_layout, &self.composite_layout].map(|layout| {
-            let resources = [pair_buffer.as_entire_binding(), wgpu::BindingResource::TextureView(&view)];
-            bind(&gpu.device, layout, &resources)
-        });
-        let bindings = frame.bind(Eye::Reference);
+        let [cast_group, composite_group] = [&self.cast_layout, &self.composite_layout]
+            .map(|layout| bind(&gpu.device, layout, &[wgpu::BindingResource::TextureView(&view)]));
+        let bindings = frame.bind(Eye::Reference, &pair);
         let cast = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&cast_group));
             let [_, bands] = frame.squares(Eye::Reference);
             pass.dispatch_workgroups(pair.count, bands, 1);
         })?;
-        let bindings = frame.bind(Eye::Derived);
+        let bindings = frame.bind(Eye::Derived, &pair);
         let composite = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &composite_pipeline, Some(&composite_group));
             let [squares_x, squares_y] = frame.squares(Eye::Derived);

@@ -6,7 +6,7 @@ use crate::groups::Bindings;
 use crate::pacer::{BAND_ROWS, ITERATION_LIMIT, spreading_stride};
 use crate::renderer::{Prepared, Renderer, Squares};
 use crate::target::Target;
-use crate::uniforms::ViewUniform;
+use crate::uniforms::{PairUniform, ViewUniform};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
@@ -146,7 +146,7 @@ impl PairFrame<'_> {
 
     /// Makes a picture the one that the next dispatches are about, in the squares that the volume covers. Rays are those of
     /// the reference eye for either.
-    pub(crate) fn bind(&self, eye: Eye) -> Bindings<'_> {
+    pub(crate) fn bind(&self, eye: Eye, pair: &PairUniform) -> Bindings<'_> {
         let covered = &self.covered[eye as usize];
         let is_software = self.gpu.description().is_software;
         let piece = ViewUniform {
@@ -154,6 +154,7 @@ impl PairFrame<'_> {
             row_count: covered.rows(self.size()[1]),
             first_column: covered.columns.start * BAND_ROWS,
             band_stride: if is_software { spreading_stride(covered.bands.len() as u32) } else { 1 },
+            pair: *pair,
             ..ViewUniform::new(self.parameters(), self.epipolar.reference())
         };
         self.gpu.queue.write_buffer(&self.prepared.view_uniform, 0, bytemuck::bytes_of(&piece));

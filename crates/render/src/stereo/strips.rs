@@ -7,7 +7,7 @@ use super::PairError;
 use super::pair::{Eye, PairFrame, PairReport};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
-use crate::groups::{GroupLayouts, bind, layout, read_only_storage, storage_buffer};
+use crate::groups::{GroupLayouts, bind, layout, storage_buffer};
 use crate::pacer::{BAND_ROWS, ITERATION_LIMIT};
 use crate::readback::read_buffer;
 use crate::uniforms::PairUniform;
@@ -31,6 +31,9 @@ const GPU_ITERATIONS: u32 = 1 << 18;
 /// Samples of a stretch: `STRETCH` of `lib/ray_state.wgsl`.
 const STRETCH: u32 = 16;
 
+/// Loop iterations of a sample at most, besides shading: the largest `ITERATIONS_PER_SAMPLE` of a kernel.
+const MOST_ITERATIONS_PER_SAMPLE: u32 = 5;
+
 /// Rays that software Vulkan casts in lockstep.
 const LOCKSTEP_RAYS: u32 = 8;
 
@@ -51,7 +54,6 @@ impl StripPass {
     /// Nothing built yet.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
         let types = [
-            read_only_storage::<PairUniform>(),
             storage_buffer(COLOR_BYTES),
             storage_buffer(DEPTH_BYTES),
             storage_buffer(2 * BAND_BYTES),
@@ -74,31 +76,33 @@ impl StripPass {
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
         let strips = PairUniform {
             iteration_limit: iteration_limit(frame)?,
-            iterations_per_stretch: iterations_per_stretch(frame),
-            iterations_per_leap: LOCKSTEP_RAYS,
+            iterations_of_shading: frame.prepared.iterations_of_shading,
+            lockstep_rays: LOCKSTEP_RAYS,
             ..PairUniform::new(frame.epipolar, frame.slabs, &frame.columns, STRIP_COLUMNS)
         };
         let list = self.list.pipeline(frame.gpu, frame.prepared.variant)?;
         let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
         let merge = self.merge.pipeline(frame.gpu, frame.prepared.variant)?;
         let buffers = self.buffers(frame, &strips)?;
-        let bindings = frame.bind(Eye::Reference);
+        let bindings = frame.bind(Eye::Reference, &strips);
         let [_, bands] = frame.squares(Eye::Reference);
-        buffers.begin(&frame.gpu.queue, &strips);
+        buffers.finish_all(&frame.gpu.queue);
         let mut cast = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &list, Some(&buffers.group));
             pass.dispatch_workgroups(strips.count, bands, 1);
             pass.set_pipeline(&pipeline);
             pass.dispatch_workgroups(strips.count, bands, 1);
         })?;
+        let resumed = PairUniform { is_resuming: 1, ..strips };
         while buffers.is_unfinished(frame.gpu)? {
-            buffers.begin(&frame.gpu.queue, &PairUniform { is_resuming: 1, ..strips });
+            let bindings = frame.bind(Eye::Reference, &resumed);
+            buffers.finish_all(&frame.gpu.queue);
             cast += frame.run(|encoder| {
                 let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&buffers.group));
                 pass.dispatch_workgroups(strips.count, bands, 1);
             })?;
         }
-        let bindings = frame.bind(Eye::Derived);
+        let bindings = frame.bind(Eye::Derived, &strips);
         let composite = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &merge, Some(&buffers.group));
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
@@ -134,7 +138,6 @@ impl StripPass {
 struct StripBuffers {
     /// Bytes of colours, depths, strips in bands and progress.
     sizes: [u64; 4],
-    pair: wgpu::Buffer,
     bands: wgpu::Buffer,
     /// Where the host reads how many rows of strips are not finished.
     unfinished: wgpu::Buffer,
@@ -160,23 +163,21 @@ impl StripBuffers {
         };
         let copied_to = wgpu::BufferUsages::COPY_DST;
         let storage = wgpu::BufferUsages::STORAGE | copied_to | wgpu::BufferUsages::COPY_SRC;
-        let pair = buffer("pair", size_of::<PairUniform>() as u64, storage);
         let kept = sizes.map(|size| buffer("strips", size, storage));
         let unfinished = buffer("unfinished strips", 4, copied_to | wgpu::BufferUsages::MAP_READ);
         let [colors, depths_m, bands, progress] = &kept;
         let group = bind(
             &gpu.device,
             layout,
-            &[&pair, colors, depths_m, bands, progress].map(wgpu::Buffer::as_entire_binding),
+            &[colors, depths_m, bands, progress].map(wgpu::Buffer::as_entire_binding),
         );
         gpu.check()?;
         let [.., bands, _] = kept;
-        Ok(Self { sizes, pair, bands, unfinished, group })
+        Ok(Self { sizes, bands, unfinished, group })
     }
 
-    /// Says what the next dispatch is to do.
-    fn begin(&self, queue: &wgpu::Queue, strips: &PairUniform) {
-        queue.write_buffer(&self.pair, 0, bytemuck::bytes_of(strips));
+    /// Counts all rows of strips as finished, before a dispatch counts those that are not.
+    fn finish_all(&self, queue: &wgpu::Queue) {
         queue.write_buffer(&self.bands, 0, bytemuck::bytes_of(&0_u32));
     }
 
@@ -191,11 +192,6 @@ impl StripBuffers {
     }
 }
 
-/// Loop iterations that a stretch of samples takes at most: each sample's, a new slab's, and those that end the loops.
-fn iterations_per_stretch(frame: &PairFrame<'_>) -> u32 {
-    STRETCH * (frame.prepared.iterations_of_shading + 5) + 4
-}
-
 /// Loop iterations after which an invocation leaves the rest to the next dispatch.
 ///
 /// Software Vulkan counts the iterations of eight invocations in lockstep: as many as that one has which does the most. An
@@ -208,8 +204,10 @@ fn iteration_limit(frame: &PairFrame<'_>) -> Result<u32, PairError> {
         return Ok(GPU_ITERATIONS);
     }
     let samples = frame.parameters().most_samples_per_ray();
-    let besides =
-        iterations_per_stretch(frame) + LOCKSTEP_RAYS * samples + 3 * STRIP_COLUMNS + frame.slabs.layers();
+    let besides = STRETCH * (MOST_ITERATIONS_PER_SAMPLE + frame.prepared.iterations_of_shading)
+        + LOCKSTEP_RAYS * samples
+        + 3 * STRIP_COLUMNS
+        + frame.slabs.layers();
     let limit = ITERATION_LIMIT.saturating_sub(besides);
     if limit == 0 { Err(PairError::LongRays { samples }) } else { Ok(limit) }
 }

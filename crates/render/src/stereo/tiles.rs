@@ -8,7 +8,7 @@ use super::PairError;
 use super::pair::{Eye, PairFrame, PairReport};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
-use crate::groups::{GroupLayouts, bind, layout, read_only_storage, storage_buffer};
+use crate::groups::{GroupLayouts, bind, layout, storage_buffer};
 use crate::pacer::BAND_ROWS;
 use crate::uniforms::PairUniform;
 use std::time::Duration;
@@ -31,11 +31,7 @@ pub(crate) struct PairTilePass {
 impl PairTilePass {
     /// Nothing built yet.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
-        let types = [
-            read_only_storage::<PairUniform>(),
-            storage_buffer(PARTIAL_BYTES[0]),
-            storage_buffer(PARTIAL_BYTES[1]),
-        ];
+        let types = [storage_buffer(PARTIAL_BYTES[0]), storage_buffer(PARTIAL_BYTES[1])];
         let tile_layout = layout(device, "pair tiles", &types);
         let layout = groups.pipeline_layout(device, "pair tiles", Some(&tile_layout));
         let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", &[]);
@@ -61,14 +57,13 @@ impl PairTilePass {
             Some(kept) if kept.reached >= reached => kept,
             _ => TileBuffers::new(gpu, &self.tile_layout, reached)?,
         };
-        gpu.queue.write_buffer(&buffers.pair, 0, bytemuck::bytes_of(&tiles));
-        let bindings = frame.bind(Eye::Reference);
+        let bindings = frame.bind(Eye::Reference, &tiles);
         let cast = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&buffers.group));
             let [_, bands] = frame.squares(Eye::Reference);
             pass.dispatch_workgroups(tiles.count, bands, BAND_ROWS);
         })?;
-        let bindings = frame.bind(Eye::Derived);
+        let bindings = frame.bind(Eye::Derived, &tiles);
         let composite = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &merge, Some(&buffers.group));
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
@@ -85,7 +80,6 @@ impl PairTilePass {
 struct TileBuffers {
     /// Derived pixels that tiles reach, each counted once for each tile.
     reached: u64,
-    pair: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
 
@@ -99,22 +93,19 @@ impl TileBuffers {
                 reason: format!("{color_bytes} bytes of partial sums for stereo; its buffers hold {largest}"),
             });
         }
-        let buffer = |label, size, usage| {
+        let buffer = |label, size| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size,
-                usage,
+                usage: wgpu::BufferUsages::STORAGE,
                 mapped_at_creation: false,
             })
         };
-        let pair_usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-        let pair = buffer("pair tiles", size_of::<PairUniform>() as u64, pair_usage);
-        let partials = buffer("partial sums", color_bytes, wgpu::BufferUsages::STORAGE);
-        let depths_m = buffer("partial depths", depth_bytes, wgpu::BufferUsages::STORAGE);
-        let group =
-            bind(&gpu.device, layout, &[&pair, &partials, &depths_m].map(wgpu::Buffer::as_entire_binding));
+        let partials = buffer("partial sums", color_bytes);
+        let depths_m = buffer("partial depths", depth_bytes);
+        let group = bind(&gpu.device, layout, &[&partials, &depths_m].map(wgpu::Buffer::as_entire_binding));
         gpu.check()?;
-        Ok(Self { reached, pair, group })
+        Ok(Self { reached, group })
     }
 }
 
