@@ -88,6 +88,11 @@ impl Variant {
         Self { resume: RESUME_PARTS, ..self }
     }
 
+    /// The kernel that casts listed tiles.
+    pub(crate) fn of_listed_tiles(self) -> Self {
+        Self { tiles: TILES_LISTED, ..self }
+    }
+
     /// Every kernel that parameters can ask for.
     #[cfg(test)]
     fn all() -> Vec<Self> {

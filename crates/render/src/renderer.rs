@@ -6,7 +6,7 @@ use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
-use crate::stereo::{LayerFormat, LayerPass, PairTilePass, StripPass};
+use crate::stereo::{LayerFormat, LayerPass, PairTilePass, Quality, RepairList, StripPass};
 use crate::target::Target;
 use crate::tile_pass::{self, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
@@ -23,15 +23,16 @@ use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
 use wheatstone_core::view::{PixelRect, View};
 
 /// Most bytes of ray states between dispatches.
-const MOST_STATE_BYTES: u64 = 64 << 20;
+pub(crate) const MOST_STATE_BYTES: u64 = 64 << 20;
 
 /// Pipelines and pacing, made once per device.
 #[derive(Debug)]
 pub struct Renderer {
     groups: GroupLayouts,
-    casts: VariantPipelines,
+    pub(crate) casts: VariantPipelines,
     tile_pass: TilePass,
-    strip_pass: Option<StripPass>,
+    strip_passes: HashMap<Quality, StripPass>,
+    repairs: Option<RepairList>,
     pair_tile_pass: Option<PairTilePass>,
     layer_passes: HashMap<LayerFormat, LayerPass>,
     sampler: wgpu::Sampler,
@@ -109,7 +110,8 @@ impl Renderer {
             groups,
             casts,
             tile_pass,
-            strip_pass: None,
+            strip_passes: HashMap::new(),
+            repairs: None,
             pair_tile_pass: None,
             layer_passes: HashMap::new(),
             sampler,
@@ -235,9 +237,17 @@ impl Renderer {
         targets.iter().map(|target| target.read(gpu)).collect()
     }
 
-    /// Strips, made when first asked for.
-    pub(crate) fn strips(&mut self, gpu: &Gpu) -> &mut StripPass {
-        self.strip_pass.get_or_insert_with(|| StripPass::new(&gpu.device, &self.groups))
+    /// Strips of a quality, made when first asked for.
+    pub(crate) fn strips(&mut self, gpu: &Gpu, quality: Quality) -> &mut StripPass {
+        self.strip_passes.entry(quality).or_insert_with(|| StripPass::new(&gpu.device, &self.groups, quality))
+    }
+
+    /// An empty list of tiles to repair, the last one if it has room for a picture.
+    pub(crate) fn repairs(&mut self, gpu: &Gpu, size: [u32; 2]) -> RepairList {
+        let kept = self.repairs.take().filter(|list| list.has_room(size));
+        let list = kept.unwrap_or_else(|| RepairList::new(gpu, size));
+        list.clear(&gpu.queue);
+        self.repairs.insert(list).clone()
     }
 
     /// Tiles of pairs, made when first asked for.
@@ -407,7 +417,7 @@ fn shortest_run(gpu: &Gpu) -> f32 {
 }
 
 /// A buffer that only shaders read and write; zero at first.
-fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
+pub(crate) fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,

@@ -14,7 +14,7 @@ use wheatstone_core::scene::Mode;
 const TILE: [u32; 2] = [4, 2];
 
 /// Workgroups of a cast along x: `GROUPS_PER_ROW` of `lib/tile_list.wgsl`.
-const GROUPS_PER_ROW: u32 = 256;
+pub(crate) const GROUPS_PER_ROW: u32 = 256;
 
 /// The files of the kernel's slots.
 const CHOICES: [(&str, &str); 2] =
@@ -24,6 +24,11 @@ const CHOICES: [(&str, &str); 2] =
 pub(crate) fn pays(gpu: &Gpu, parameters: &CastParameters, leap: &Leap<'_>) -> bool {
     let leaves_blank = matches!(parameters.mode, Mode::Composite | Mode::Isosurface { .. });
     gpu.description().is_software && leaves_blank && matches!(leap, Leap::EmptyBlocks(_))
+}
+
+/// Tiles of a picture.
+pub(crate) fn tiles_of([width, height]: [u32; 2]) -> u64 {
+    u64::from(width.div_ceil(TILE[0])) * u64::from(height.div_ceil(TILE[1]))
 }
 
 /// The pipeline.
@@ -47,8 +52,8 @@ impl TilePass {
     }
 
     /// The list of a picture; empty.
-    pub(crate) fn list(&self, device: &wgpu::Device, [width, height]: [u32; 2]) -> TileList {
-        let tiles = u64::from(width.div_ceil(TILE[0])) * u64::from(height.div_ceil(TILE[1]));
+    pub(crate) fn list(&self, device: &wgpu::Device, size: [u32; 2]) -> TileList {
+        let tiles = tiles_of(size);
         let buffer = |label, words: u64, usage| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),

@@ -20,12 +20,3 @@ fn first_reached(strip: u32) -> i32 {
 fn partial_at(row: u32, strip: u32, column: i32) -> u32 {
     return (row * view.pair.count + strip) * reach() + u32(column - first_reached(strip));
 }
-
-// Empties the first partial sums of a strip.
-fn empty_partials(row: u32, strip: u32, count: u32) {
-    let first = partial_at(row, strip, first_reached(strip));
-    for (var i = 0u; i < count; i++) {
-        partials[first + i] = vec4f(0.0);
-        partial_depths_m[first + i] = 0.0;
-    }
-}

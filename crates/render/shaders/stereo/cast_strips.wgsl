@@ -1,11 +1,12 @@
 import package::lib::accumulate::{finish_ray};
 import package::lib::cast_segments::{cast_segments};
+import package::lib::cuts::{empty_cut, note_cut};
 import package::lib::mirrored::{mirrored};
 import package::lib::ray::{ray_through};
 import package::lib::segment_sink::{SegmentPlace};
 import package::lib::segmented_ray::{SegmentedRay, is_spent, leaps, start_segments, stretches};
 import package::lib::strip_bands::{columns_before, last_of, strip_band_at, strips};
-import package::lib::strips::{empty_partials, reach};
+import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
 import package::lib::target::{store};
 import package::lib::view::{BAND_ROWS, first_pixel_of_group, view};
 
@@ -19,10 +20,25 @@ struct Progress {
     left: vec2u,
     // 1 if the last of them is begun.
     is_begun: u32,
+    // The first derived column that has been looked at for what rays leave out.
+    noted: i32,
     ray: SegmentedRay,
 }
 
+// More than any column.
+const NOTHING_NOTED: i32 = 0x7fffffff;
+
 @group(3) @binding(3) var<storage, read_write> progress: array<Progress>;
+// Empties the first partial sums of a strip.
+fn empty_partials(row: u32, strip: u32, count: u32) {
+    let first = partial_at(row, strip, first_reached(strip));
+    for (var i = first; i < first + count; i++) {
+        partials[i] = vec4f(0.0);
+        partial_depths_m[i] = 0.0;
+        empty_cut(i);
+    }
+}
+
 @compute @workgroup_size(BAND_ROWS)
 fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let row = first_pixel_of_group(group).y + lane;
@@ -38,10 +54,12 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     var left = strips.bands[band].listed;
     var under_way: SegmentedRay;
     var is_begun = false;
+    var noted = NOTHING_NOTED;
     if is_resuming {
         left = progress[at].left;
         under_way = progress[at].ray;
         is_begun = progress[at].is_begun == 1u;
+        noted = progress[at].noted;
     }
     empty_partials(row, strip, select(reach(), 0u, is_resuming));
     while any(left != vec2u(0u)) && !is_spent() {
@@ -52,9 +70,11 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
         if !is_begun {
             under_way = start_segments(ray);
         }
-        under_way = cast_segments(ray, view.pair.furthest, SegmentPlace(row, strip, column), under_way);
+        let place = SegmentPlace(row, strip, column);
+        under_way = cast_segments(ray, view.pair.furthest, place, under_way);
         is_begun = under_way.state.is_finished == 0u;
         if !is_begun {
+            noted = note_cut(place, ray, under_way, noted);
             left &= columns_before(offset);
             if x >= 0 && x < i32(view.width) && ray.sample_count > 0u {
                 store(vec2u(u32(x), row), finish_ray(ray, under_way.state));
@@ -67,7 +87,7 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
         leaps = atomicLoad(&strips.bands[band].leaps) - leaps_before;
     }
     if any(left != vec2u(0u)) {
-        progress[at] = Progress(left, select(0u, 1u, is_begun), under_way);
+        progress[at] = Progress(left, select(0u, 1u, is_begun), noted, under_way);
         atomicAdd(&strips.unfinished, 1u);
     } else {
         progress[at].left = vec2u(0u);

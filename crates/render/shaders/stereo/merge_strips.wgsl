@@ -1,11 +1,8 @@
-import package::lib::join::{color_of, join};
-import package::lib::mirrored::{mirrored};
-import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, Pixel};
-import package::lib::strips::{first_reached, partial_at, partial_depths_m, partials, reach};
+import package::lib::merged::{merged_at};
 import package::lib::target::{store};
-import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece, view};
+import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece};
 
-// Composites what the strips have left for each derived pixel, the last strip in front.
+// Composites what the strips have left for each derived pixel.
 
 @compute @workgroup_size(BAND_ROWS, BAND_ROWS)
 fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
@@ -13,25 +10,5 @@ fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     if is_outside_piece(pixel) {
         return;
     }
-    let column = mirrored(i32(pixel.x));
-    let width = i32(view.pair.width);
-    // Strips whose reach holds the column: first_reached(strip) <= column < first_reached(strip) + reach().
-    let from_first = column - first_reached(0u);
-    let last = select(-1, min(from_first / width, i32(view.pair.count) - 1), from_first >= 0);
-    let first = max((from_first - i32(reach()) + width) / width, 0);
-    var joint = vec4f(0.0);
-    var depth_m = NOTHING_HIT;
-    // Reads outside of branches: a branch around the loop crashes Mesa 22's software Vulkan.
-    var strip = last;
-    while strip >= first {
-        let at = partial_at(pixel.y, u32(strip), column);
-        let partial = partials[at];
-        let partial_depth_m = partial_depths_m[at];
-        joint = join(joint, partial);
-        if depth_m == NOTHING_HIT && joint.a >= FIRST_HIT_ALPHA {
-            depth_m = partial_depth_m;
-        }
-        strip--;
-    }
-    store(pixel, Pixel(color_of(joint), depth_m, 0u, 0u));
+    store(pixel, merged_at(pixel).pixel);
 }

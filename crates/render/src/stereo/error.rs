@@ -15,6 +15,9 @@ pub enum PairError {
     /// Something other than composites and X-rays.
     #[error("only composites and X-rays are derived")]
     Mode,
+    /// Something other than strips, repaired.
+    #[error("only strips are repaired")]
+    Unrepaired,
     /// Rays of which a driver does not take one in a dispatch.
     #[error("rays of up to {samples} samples are too long for one dispatch on this device")]
     LongRays {

@@ -114,7 +114,7 @@ impl LayerPass {
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
             pass.dispatch_workgroups(squares_x, squares_y, 1);
         })?;
-        Ok(PairReport { bytes, clear, cast, composite })
+        Ok(PairReport { bytes, clear, cast, composite, ..PairReport::default() })
     }
 
     /// Layers for a pair: those of the last pair if they are as many and as large.

@@ -27,9 +27,13 @@ pub enum LayerFormat {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Quality {
-    /// Segments of the reference eye's rays alone.
+    /// Segments of the reference eye's rays alone: samples are up to half a column off, and what these rays do not see behind
+    /// an edge is missing.
     #[default]
     Fast,
+    /// Tiles where that would show are cast directly (DESIGN §5.3): where rays ended that the derived eye would have needed, and
+    /// where the picture is rough. Only strips are repaired.
+    Repaired,
 }
 
 /// How a pair is made.

@@ -4,6 +4,7 @@ mod error;
 mod layers;
 mod method;
 mod pair;
+mod repair;
 mod strips;
 mod tiles;
 
@@ -11,5 +12,6 @@ pub use error::PairError;
 pub(crate) use layers::LayerPass;
 pub use method::{Form, LayerFormat, PairMethod, Quality};
 pub use pair::PairReport;
+pub(crate) use repair::RepairList;
 pub(crate) use strips::StripPass;
 pub(crate) use tiles::PairTilePass;

@@ -1,6 +1,6 @@
 //! One pair of pictures.
 
-use super::{Form, PairError, PairMethod};
+use super::{Form, PairError, PairMethod, Quality, RepairList};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::Bindings;
 use crate::pacer::{BAND_ROWS, ITERATION_LIMIT, spreading_stride};
@@ -27,6 +27,8 @@ pub struct PairReport {
     pub cast: Duration,
     /// Time of making the derived picture of what the cast has left.
     pub composite: Duration,
+    /// Time of casting what is not derived.
+    pub repair: Duration,
 }
 
 /// What the forms need of a pair.
@@ -41,6 +43,8 @@ pub(crate) struct PairFrame<'a> {
     /// Squares of pixels that the volume covers, in the reference picture and in the derived one.
     covered: [Squares; 2],
     targets: [wgpu::BindGroup; 2],
+    /// Tiles of the derived picture that are to be cast.
+    pub(crate) repairs: RepairList,
 }
 
 /// Which picture of a pair.
@@ -72,22 +76,32 @@ impl Renderer {
         if !matches!(prepared.parameters.mode, Mode::Composite | Mode::XRay) {
             return Err(PairError::Mode);
         }
+        if method.quality == Quality::Repaired && method.form != Form::Strips {
+            return Err(PairError::Unrepaired);
+        }
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         targets.iter().for_each(|target| target.clear(&mut encoder));
         gpu.queue.submit([encoder.finish()]);
         let Some(frame) = self.pair_frame(gpu, prepared, epipolar, targets)? else {
             return Ok(PairReport::default());
         };
-        match method.form {
-            Form::Strips => self.strips(gpu).render(&frame),
+        let report = match method.form {
+            Form::Strips => self.strips(gpu, method.quality).render(&frame),
             Form::Tiles => self.tiles(gpu).render(&frame),
             Form::Layers(format) => self.layers(gpu, format).render(&frame),
+        }?;
+        match method.quality {
+            Quality::Fast => Ok(report),
+            Quality::Repaired => {
+                let bytes = report.bytes + frame.repairs.byte_size();
+                Ok(PairReport { bytes, repair: self.cast_listed(&frame, targets[1])?, ..report })
+            }
         }
     }
 
     /// What the forms need; nothing if no ray meets the volume.
     fn pair_frame<'a>(
-        &self,
+        &mut self,
         gpu: &'a Gpu,
         prepared: &'a Prepared,
         epipolar: &'a Epipolar,
@@ -102,6 +116,7 @@ impl Renderer {
         if columns.is_empty() {
             return Ok(None);
         }
+        let repairs = self.repairs(gpu, size);
         // Rows correspond: nothing is derived where no ray of the reference eye is.
         let [reference, derived] =
             [epipolar.reference(), epipolar.derived()].map(|view| Squares::covered(view, &corners));
@@ -112,7 +127,8 @@ impl Renderer {
             slabs,
             columns,
             covered: [reference.clone(), Squares { bands: reference.bands, ..derived }],
-            targets: targets.map(|target| self.target_group(gpu, target, self.unused.each_ref())),
+            targets: targets.map(|target| self.target_group(gpu, target, [&self.unused[0], &repairs.tiles])),
+            repairs,
         }))
     }
 }

@@ -3,15 +3,15 @@
 //! Single-pass stereo (SP) without its layers: a strip composites segments into the derived columns that it reaches, in the
 //! order in which they are made; where strips overlap, their sums are merged, for `over` is associative.
 
-use super::PairError;
 use super::pair::{Eye, PairFrame, PairReport};
+use super::repair::GROUPS_BYTES;
+use super::{PairError, Quality};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{GroupLayouts, bind, layout, storage_buffer};
 use crate::pacer::{BAND_ROWS, ITERATION_LIMIT};
 use crate::readback::read_buffer;
 use crate::uniforms::PairUniform;
-use std::time::Duration;
 
 /// Columns of a strip: two words of `lib/strip_bands.wgsl`. More of them overlap less, fewer keep more processors busy.
 const STRIP_COLUMNS: u32 = 64;
@@ -40,6 +40,20 @@ const LOCKSTEP_RAYS: u32 = 8;
 /// Bytes of a strip in a band of rows, and of what stands before all: `Strips` of `lib/strip_bands.wgsl`.
 const BAND_BYTES: u64 = 16;
 
+/// Bytes of whether rays ended that a derived pixel would have needed.
+const CUT_BYTES: u64 = 4;
+
+/// Files of kernels that do not ask for what ended rays leave out.
+const CUTS_NONE: &[(&str, &str)] =
+    &[("lib/segment_sink", "stereo/sink_strips"), ("lib/cuts", "lib/cuts_none")];
+
+/// Files of kernels that do.
+const CUTS_KEPT: &[(&str, &str)] =
+    &[("lib/segment_sink", "stereo/sink_strips"), ("lib/cuts", "lib/cuts_kept")];
+
+/// Pixels of a workgroup that merges and lists, along x and y: `TILES` of `stereo/merge_and_list.wgsl`.
+const LISTED_PIXELS: [u32; 2] = [32, 8];
+
 /// Pipelines, and the buffers of the last pair.
 #[derive(Debug)]
 pub(crate) struct StripPass {
@@ -47,29 +61,28 @@ pub(crate) struct StripPass {
     list: VariantPipelines,
     cast: VariantPipelines,
     merge: VariantPipelines,
+    /// Pixels that a workgroup merges, along x and y.
+    merged_pixels: [u32; 2],
+    notes_cuts: bool,
     kept: Option<StripBuffers>,
 }
 
 impl StripPass {
     /// Nothing built yet.
-    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
-        let types = [
-            storage_buffer(COLOR_BYTES),
-            storage_buffer(DEPTH_BYTES),
-            storage_buffer(2 * BAND_BYTES),
-            storage_buffer(PROGRESS_BYTES),
-        ];
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts, quality: Quality) -> Self {
+        let (cuts, merge, entry_point, merged_pixels) = match quality {
+            Quality::Fast => (CUTS_NONE, "stereo/merge_strips", "merge_strips", [BAND_ROWS; 2]),
+            Quality::Repaired => (CUTS_KEPT, "stereo/merge_and_list", "merge_and_list", LISTED_PIXELS),
+        };
+        let smallest = [COLOR_BYTES, DEPTH_BYTES, 2 * BAND_BYTES, PROGRESS_BYTES, CUT_BYTES, GROUPS_BYTES];
+        let types = smallest.map(storage_buffer);
         let strip_layout = layout(device, "strips", &types);
         let layout = groups.pipeline_layout(device, "strips", Some(&strip_layout));
-        let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", &[]);
+        let merge = VariantPipelines::new(layout.clone(), merge, entry_point, cuts);
         let list = VariantPipelines::new(layout.clone(), "stereo/list_columns", "list_columns", &[]);
-        let cast = VariantPipelines::new(
-            layout,
-            "stereo/cast_strips",
-            "cast_strips",
-            &[("lib/segment_sink", "stereo/sink_strips")],
-        );
-        Self { strip_layout, list, cast, merge, kept: None }
+        let cast = VariantPipelines::new(layout, "stereo/cast_strips", "cast_strips", cuts);
+        let notes_cuts = quality == Quality::Repaired;
+        Self { strip_layout, list, cast, merge, merged_pixels, notes_cuts, kept: None }
     }
 
     /// Makes a pair.
@@ -84,11 +97,12 @@ impl StripPass {
         let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
         let merge = self.merge.pipeline(frame.gpu, frame.prepared.variant)?;
         let buffers = self.buffers(frame, &strips)?;
+        let group = self.group(frame, &buffers);
         let bindings = frame.bind(Eye::Reference, &strips);
         let [_, bands] = frame.squares(Eye::Reference);
         buffers.finish_all(&frame.gpu.queue);
         let mut cast = frame.run(|encoder| {
-            let mut pass = bindings.begin_pass(encoder, &list, Some(&buffers.group));
+            let mut pass = bindings.begin_pass(encoder, &list, Some(&group));
             pass.dispatch_workgroups(strips.count, bands, 1);
             pass.set_pipeline(&pipeline);
             pass.dispatch_workgroups(strips.count, bands, 1);
@@ -98,19 +112,20 @@ impl StripPass {
             let bindings = frame.bind(Eye::Reference, &resumed);
             buffers.finish_all(&frame.gpu.queue);
             cast += frame.run(|encoder| {
-                let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&buffers.group));
+                let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&group));
                 pass.dispatch_workgroups(strips.count, bands, 1);
             })?;
         }
         let bindings = frame.bind(Eye::Derived, &strips);
         let composite = frame.run(|encoder| {
-            let mut pass = bindings.begin_pass(encoder, &merge, Some(&buffers.group));
-            let [squares_x, squares_y] = frame.squares(Eye::Derived);
-            pass.dispatch_workgroups(squares_x, squares_y, 1);
+            let mut pass = bindings.begin_pass(encoder, &merge, Some(&group));
+            let [width, height] = frame.squares(Eye::Derived).map(|squares| squares * BAND_ROWS);
+            let [pixels_x, pixels_y] = self.merged_pixels;
+            pass.dispatch_workgroups(width.div_ceil(pixels_x), height.div_ceil(pixels_y), 1);
         })?;
         let bytes = buffers.sizes.iter().sum();
         self.kept = Some(buffers);
-        Ok(PairReport { bytes, clear: Duration::ZERO, cast, composite })
+        Ok(PairReport { bytes, cast, composite, ..PairReport::default() })
     }
 
     /// Room for a pair: that of the last pair if it is large enough. Each strip empties its own sums.
@@ -124,28 +139,35 @@ impl StripPass {
             sums * DEPTH_BYTES,
             (1 + strip_bands) * BAND_BYTES,
             strip_rows * PROGRESS_BYTES,
+            if self.notes_cuts { sums * CUT_BYTES } else { CUT_BYTES },
         ];
         let is_enough = |kept: &StripBuffers| kept.sizes.iter().zip(&sizes).all(|(kept, size)| kept >= size);
         match self.kept.take().filter(is_enough) {
             Some(kept) => Ok(kept),
-            None => StripBuffers::new(frame.gpu, &self.strip_layout, sizes),
+            None => StripBuffers::new(frame.gpu, sizes),
         }
+    }
+
+    fn group(&self, frame: &PairFrame<'_>, buffers: &StripBuffers) -> wgpu::BindGroup {
+        let kept = buffers.kept.iter().chain([&frame.repairs.groups]);
+        let resources: Vec<_> = kept.map(wgpu::Buffer::as_entire_binding).collect();
+        bind(&frame.gpu.device, &self.strip_layout, &resources)
     }
 }
 
 /// Partial sums of pairs of pictures.
 #[derive(Debug)]
 struct StripBuffers {
-    /// Bytes of colours, depths, strips in bands and progress.
-    sizes: [u64; 4],
-    bands: wgpu::Buffer,
+    /// Bytes of `kept`.
+    sizes: [u64; 5],
+    /// Colours, depths, strips in bands, progress and cuts.
+    kept: [wgpu::Buffer; 5],
     /// Where the host reads how many rows of strips are not finished.
     unfinished: wgpu::Buffer,
-    group: wgpu::BindGroup,
 }
 
 impl StripBuffers {
-    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, sizes: [u64; 4]) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, sizes: [u64; 5]) -> Result<Self, GpuError> {
         let limits = gpu.device.limits();
         let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         if let Some(bytes) = sizes.into_iter().find(|&bytes| bytes > largest) {
@@ -165,26 +187,23 @@ impl StripBuffers {
         let storage = wgpu::BufferUsages::STORAGE | copied_to | wgpu::BufferUsages::COPY_SRC;
         let kept = sizes.map(|size| buffer("strips", size, storage));
         let unfinished = buffer("unfinished strips", 4, copied_to | wgpu::BufferUsages::MAP_READ);
-        let [colors, depths_m, bands, progress] = &kept;
-        let group = bind(
-            &gpu.device,
-            layout,
-            &[colors, depths_m, bands, progress].map(wgpu::Buffer::as_entire_binding),
-        );
         gpu.check()?;
-        let [.., bands, _] = kept;
-        Ok(Self { sizes, bands, unfinished, group })
+        Ok(Self { sizes, kept, unfinished })
+    }
+
+    fn bands(&self) -> &wgpu::Buffer {
+        &self.kept[2]
     }
 
     /// Counts all rows of strips as finished, before a dispatch counts those that are not.
     fn finish_all(&self, queue: &wgpu::Queue) {
-        queue.write_buffer(&self.bands, 0, bytemuck::bytes_of(&0_u32));
+        queue.write_buffer(self.bands(), 0, bytemuck::bytes_of(&0_u32));
     }
 
     /// Whether the last dispatch has left anything to the next.
     fn is_unfinished(&self, gpu: &Gpu) -> Result<bool, GpuError> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(&self.bands, 0, &self.unfinished, 0, 4);
+        encoder.copy_buffer_to_buffer(self.bands(), 0, &self.unfinished, 0, 4);
         gpu.queue.submit([encoder.finish()]);
         let count: u32 = read_buffer(gpu, &self.unfinished, bytemuck::pod_read_unaligned)?;
         self.unfinished.unmap();
@@ -206,8 +225,52 @@ fn iteration_limit(frame: &PairFrame<'_>) -> Result<u32, PairError> {
     let samples = frame.parameters().most_samples_per_ray();
     let besides = STRETCH * (MOST_ITERATIONS_PER_SAMPLE + frame.prepared.iterations_of_shading)
         + LOCKSTEP_RAYS * samples
-        + 3 * STRIP_COLUMNS
-        + frame.slabs.layers();
+        + 5 * STRIP_COLUMNS
+        + 3 * frame.slabs.layers();
     let limit = ITERATION_LIMIT.saturating_sub(besides);
     if limit == 0 { Err(PairError::LongRays { samples }) } else { Ok(limit) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compose;
+
+    #[test]
+    fn the_passes_build_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        for quality in [Quality::Fast, Quality::Repaired] {
+            let pass = StripPass::new(&device, &GroupLayouts::new(&device), quality);
+            [pass.list, pass.cast, pass.merge]
+                .iter()
+                .for_each(|pipelines| pipelines.build_all_of_pairs(&device));
+        }
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+
+    #[test]
+    fn constants_are_those_of_the_kernels() {
+        let choices = [
+            ("lib/join", "lib/join_over"),
+            ("lib/cuts", "lib/cuts_none"),
+            ("lib/segment_sink", "stereo/sink_strips"),
+            ("lib/accumulate", "lib/accumulate_composite"),
+            ("lib/classify", "lib/classify_value"),
+            ("lib/shade", "lib/shade_none"),
+            ("lib/skip", "lib/skip_none"),
+            ("lib/volume", "lib/volume_filtered"),
+        ];
+        let text = compose("stereo/merge_and_list", &choices).unwrap().text;
+        let [x, y] = LISTED_PIXELS;
+        for line in [
+            format!("const TILES = vec2u({}u, {}u);", x / 4, y / 2),
+            "const TILE = vec2u(4u, 2u);".to_owned(),
+            format!("const STRETCH: u32 = {STRETCH}u;"),
+        ] {
+            assert!(text.contains(&line), "{line}");
+        }
+    }
 }

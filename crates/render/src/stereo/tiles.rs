@@ -11,13 +11,15 @@ use crate::gpu::{Gpu, GpuError};
 use crate::groups::{GroupLayouts, bind, layout, storage_buffer};
 use crate::pacer::BAND_ROWS;
 use crate::uniforms::PairUniform;
-use std::time::Duration;
 
 /// Columns of a tile: `TILE_COLUMNS` of `stereo/sink_tiles.wgsl`.
 const TILE_COLUMNS: u32 = 32;
 
 /// Bytes of what a tile leaves for a derived pixel: RGBA, and the depth of the first hit.
 const PARTIAL_BYTES: [u64; 2] = [16, 4];
+
+/// Files of the kernels' slots.
+const FILES: &[(&str, &str)] = &[("lib/segment_sink", "stereo/sink_tiles"), ("lib/cuts", "lib/cuts_none")];
 
 /// Pipelines, and the buffers of the last pair.
 #[derive(Debug)]
@@ -34,13 +36,8 @@ impl PairTilePass {
         let types = [storage_buffer(PARTIAL_BYTES[0]), storage_buffer(PARTIAL_BYTES[1])];
         let tile_layout = layout(device, "pair tiles", &types);
         let layout = groups.pipeline_layout(device, "pair tiles", Some(&tile_layout));
-        let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", &[]);
-        let cast = VariantPipelines::new(
-            layout,
-            "stereo/cast_tiles",
-            "cast_tiles",
-            &[("lib/segment_sink", "stereo/sink_tiles")],
-        );
+        let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", FILES);
+        let cast = VariantPipelines::new(layout, "stereo/cast_tiles", "cast_tiles", FILES);
         Self { tile_layout, cast, merge, kept: None }
     }
 
@@ -71,7 +68,7 @@ impl PairTilePass {
         })?;
         let bytes = buffers.reached * PARTIAL_BYTES.iter().sum::<u64>();
         self.kept = Some(buffers);
-        Ok(PairReport { bytes, clear: Duration::ZERO, cast, composite })
+        Ok(PairReport { bytes, cast, composite, ..PairReport::default() })
     }
 }
 

@@ -13,7 +13,8 @@ use wheatstone_core::view::{Rig, View};
 use wheatstone_core::volume::{Volume, VoxelType};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
 use wheatstone_render::{
-    Gpu, GpuVolume, Leap, PairError, PairMethod, Prepared, Renderer, Sources, Target, TexelFormat,
+    Form, Gpu, GpuVolume, Leap, PairError, PairMethod, Prepared, Quality, Renderer, Sources, Target,
+    TexelFormat,
 };
 
 /// Largest difference of a channel of the reference eye from a mono cast: one level of an 8-bit picture.
@@ -149,4 +150,70 @@ fn what_cannot_be_derived_is_said() {
     });
     let turned = View { view_from_world: DAffine3::from_rotation_y(0.1) * right.view_from_world, ..right };
     assert!(matches!(Epipolar::new(&left, &turned), Err(StereoError::Orientation { .. })));
+}
+
+/// An opaque plate before an opaque ball: what the reference eye does not see behind the plate's edge is missing.
+fn plate_before_ball() -> Volume {
+    let dims = [48, 48, 48];
+    let value = |x: usize, y: usize, z: usize| {
+        let [x, y, z] = [x, y, z].map(|i| i as f64 - 23.5);
+        let is_plate = y > 15.0 && y < 19.0 && x < 2.0;
+        let is_ball = x * x + (y + 8.0) * (y + 8.0) + z * z < 12.0 * 12.0;
+        if is_plate || is_ball { 200 } else { 0 }
+    };
+    let voxels =
+        (0..48).flat_map(|z| (0..48).flat_map(move |y| (0..48).map(move |x| value(x, y, z)))).collect();
+    Volume::new(
+        wheatstone_core::volume::Grid::centred(dims, [1.0; 3]).unwrap(),
+        wheatstone_core::volume::Voxels::U8(voxels),
+    )
+    .unwrap()
+}
+
+#[test]
+fn repair_fills_what_the_reference_eye_does_not_see() {
+    let volume = plate_before_ball();
+    let views = pair(&middle([201, 131], DVec3::new(0.1, 0.05, -1.1)), -0.15, f64::INFINITY);
+    on_device(|gpu, renderer| {
+        let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
+        let mut settings = settings(&volume, Shading::Phong);
+        settings.early_termination = Some(0.99);
+        let parameters = CastParameters::new(&settings, &placement(&volume));
+        let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap();
+        let own = renderer.render_to_host(gpu, &prepared, &views).unwrap();
+        let epipolar = Epipolar::new(&views[0], &views[1]).unwrap();
+        let mut of = |quality| {
+            let targets = views.map(|view| Target::new(gpu, view.size).unwrap());
+            let method = PairMethod { quality, ..PairMethod::default() };
+            renderer.render_pair(gpu, &prepared, &epipolar, method, [&targets[0], &targets[1]]).unwrap();
+            targets.map(|target| target.read(gpu).unwrap())
+        };
+        let [fast, repaired, again] = [Quality::Fast, Quality::Repaired, Quality::Repaired].map(&mut of);
+        let missing = |derived: &Cast| {
+            let alphas = |cast: &Cast| cast.image.color.iter().map(|c| c[3]).collect::<Vec<_>>();
+            alphas(derived).iter().zip(alphas(&own[1])).filter(|(a, b)| *a + 0.5 < *b).count()
+        };
+        assert!(missing(&fast[1]) >= 10, "{}", missing(&fast[1]));
+        assert_eq!(missing(&repaired[1]), 0);
+        assert!(dssim(&repaired[1], &own[1]) < 0.25 * dssim(&fast[1], &own[1]));
+        assert!(dssim(&repaired[1], &own[1]) <= 1e-3, "{}", dssim(&repaired[1], &own[1]));
+        assert!(largest_difference(&repaired[0], &own[0]) <= LARGEST_DIFFERENCE);
+        assert_eq!(largest_difference(&repaired[1], &again[1]), 0.0);
+    });
+}
+
+#[test]
+fn only_strips_are_repaired() {
+    let volume = volume();
+    let [left, right] = pair(&middle([40, 30], DVec3::new(0.0, 0.0, 1.5)), 0.065, f64::INFINITY);
+    on_device(|gpu, renderer| {
+        let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
+        let parameters = CastParameters::new(&settings(&volume, Shading::None), &placement(&volume));
+        let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap();
+        let epipolar = Epipolar::new(&left, &right).unwrap();
+        let targets = [left, right].map(|view| Target::new(gpu, view.size).unwrap());
+        let method = PairMethod { form: Form::Tiles, quality: Quality::Repaired };
+        let refused = renderer.render_pair(gpu, &prepared, &epipolar, method, [&targets[0], &targets[1]]);
+        assert!(matches!(refused, Err(PairError::Unrepaired)), "{refused:?}");
+    });
 }

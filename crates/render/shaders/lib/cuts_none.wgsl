@@ -1,0 +1,15 @@
+import package::lib::ray::{Ray};
+import package::lib::segment_sink::{SegmentPlace};
+import package::lib::segmented_ray::{SegmentedRay};
+
+// What rays that end leave out of the derived picture is not asked for.
+
+fn empty_cut(at: u32) {}
+
+fn is_cut_at(at: u32, alpha_in_front: f32) -> bool {
+    return false;
+}
+
+fn note_cut(place: SegmentPlace, ray: Ray, ended: SegmentedRay, noted: i32) -> i32 {
+    return noted;
+}
