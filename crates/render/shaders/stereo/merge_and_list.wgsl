@@ -10,8 +10,10 @@ import package::lib::view::{view};
 // Tiles of a workgroup, along x and y; `LISTED_TILES` of the host.
 const TILES = vec2u(8u, 4u);
 
-// Mean change of slope between columns, over the pixels of a tile and summed over the channels, above which it is cast.
-const LARGEST_ROUGHNESS: f32 = 0.12;
+// Mean change of slope between columns, over the pixels of a tile and summed over the channels, in parts of their standard
+// deviation and `CONTRAST`, above which a tile is cast: DSSIM weighs errors so, too.
+const LARGEST_ROUGHNESS: f32 = 0.8;
+const CONTRAST: f32 = 0.1;
 
 // Arguments of the cast's indirect dispatch: workgroups along x, y and z.
 @group(3) @binding(5) var<storage, read_write> groups: array<atomic<u32>, 3>;
@@ -25,6 +27,8 @@ fn merge_and_list(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation
     let first = vec2u(view.first_column, view.first_row) + (group.xy * TILES + local.xy) * TILE;
     let end = min(first + TILE, vec2u(view.width, view.first_row + view.row_count));
     var roughness = 0.0;
+    var sum = vec4f(0.0);
+    var sum_of_squares = vec4f(0.0);
     var is_cut = false;
     for (var y = first.y; y < end.y; y++) {
         var before = merged_in_row(i32(first.x) - 1, y);
@@ -34,12 +38,17 @@ fn merge_and_list(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation
             store(vec2u(x, y), here.pixel);
             let change = abs(before.pixel.color + after.pixel.color - 2.0 * here.pixel.color);
             roughness += dot(change, vec4f(1.0));
+            sum += here.pixel.color;
+            sum_of_squares += here.pixel.color * here.pixel.color;
             is_cut |= here.is_cut;
             before = here;
             here = after;
         }
     }
-    if is_cut || roughness > LARGEST_ROUGHNESS * f32(TILE.x * TILE.y) {
+    let count = f32(TILE.x * TILE.y);
+    let variance = max(sum_of_squares / count - sum * sum / (count * count), vec4f(0.0));
+    let deviation = sqrt(dot(variance, vec4f(1.0)));
+    if is_cut || roughness / count > LARGEST_ROUGHNESS * (deviation + CONTRAST) {
         let slot = atomicAdd(&tile_list.count, 1u);
         tile_list.tiles[slot] = tile_of_pixel(first);
         atomicMax(&groups[1], slot / GROUPS_PER_ROW + 1u);
