@@ -145,6 +145,41 @@ fn columns_that_share_samples_see_fine_structures() {
     }
 }
 
+/// A dark red shell, nearly opaque, around a bright core: a cube whose colour tells how deep an eye sees into it.
+fn shell_around_core() -> Scene {
+    let volume = volume_of([SIDE; 3], [1.0; 3], |p| {
+        let within = 1.0..SIDE as f64 - 1.0;
+        if p.to_array().iter().all(|at| within.contains(at)) { 1.0 } else { 0.5 }
+    });
+    let transfer = TransferFunction::new(
+        vec![ColorPoint { at: 0.6, rgb: [0.4, 0.0, 0.0] }, ColorPoint { at: 0.9, rgb: [1.0; 3] }],
+        vec![OpacityPoint { at: 0.5, alpha: 0.99 }],
+    );
+    Scene::new(volume, &Settings { sampling_factor: 2.0, ..exact_settings(unit_window(), transfer.unwrap()) })
+}
+
+#[test]
+fn columns_that_share_samples_see_no_deeper_than_the_eye() {
+    let scene = shell_around_core();
+    // Faces at an angle: of their samples, columns have every share.
+    let epipolar = to_right(EYE_DISTANCE_M, f64::INFINITY, SIZE);
+    let [_, own] = scene.own(&epipolar);
+    let [_, derived] = scene.pair(&epipolar, splat(Splat::Linear));
+    let expected = &own.image.color;
+    let opaque = |i: usize| expected[i][3] > 0.99;
+    let mut faces = 0;
+    for (i, color) in rows_of_pixels(&derived) {
+        // Not at the edges, which may be a column off.
+        if i < 2 || expected.len() <= i + 2 || !(i - 2..=i + 2).all(opaque) {
+            continue;
+        }
+        faces += 1;
+        let error = color.iter().zip(expected[i]).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(error < tolerance::DERIVED_COLOR, "{i}: {color:?} {:?}", expected[i]);
+    }
+    assert!(faces > 1000, "{faces}");
+}
+
 #[test]
 fn either_eye_and_any_convergence_will_do() {
     let scene = Scene::phantom(Phantom::Sphere, &tissue_settings(Shading::None));

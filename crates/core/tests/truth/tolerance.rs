@@ -61,6 +61,9 @@ pub(crate) const DERIVED_DSSIM: f64 = 0.002;
 /// DSSIM of a small picture derived with the eye in the volume, where samples are dozens of columns wide.
 pub(crate) const INSIDE_DSSIM: f64 = 0.03;
 
+/// Error of the derived colour of an opaque face, which hides what is under it but for its first samples.
+pub(crate) const DERIVED_COLOR: f32 = 0.02;
+
 /// Mean error of a box's derived opacity: half a pixel's shift at its edges, most of all.
 pub(crate) const DERIVED_MEAN_OPACITY: f64 = 0.006;
 

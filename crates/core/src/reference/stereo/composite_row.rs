@@ -12,6 +12,7 @@ use crate::reference::gathered::Gathered;
 use crate::reference::lanes::Lanes;
 use crate::reference::lanes_exact::Exact;
 use crate::reference::ray::Ray;
+use crate::reference::vector::Vec3;
 use std::marker::PhantomData;
 
 /// A row whose pixels composite the segments of reference rays front to back.
@@ -22,15 +23,30 @@ pub(super) struct CompositeRow<C> {
     classify: PhantomData<C>,
 }
 
-/// The samples of a ray in one slab, for each column that they contribute to.
+/// The samples of a ray in one slab.
 struct Segment {
     slab: i32,
-    gathered: [Gathered<Exact>; MOST_COLUMNS],
+    /// What the ray itself gathers of them. Columns take its colour whatever their shares: a small share of a surface must not
+    /// show what is behind it.
+    gathered: Gathered<Exact>,
+    /// What passes in each column that they contribute to.
+    transmittances: [Exact; MOST_COLUMNS],
 }
 
 impl Segment {
     fn nothing(slab: i32) -> Self {
-        Self { slab, gathered: [Gathered::nothing(()); MOST_COLUMNS] }
+        let clear = Exact::splat((), 1.0);
+        Self { slab, gathered: Gathered::nothing(()), transmittances: [clear; MOST_COLUMNS] }
+    }
+
+    /// Premultiplied colour in a column: the ray's, by the column's opacity.
+    fn rgb(&self, i: usize) -> Vec3<Exact> {
+        let one = Exact::splat((), 1.0);
+        let alpha = one - self.gathered.transmittance;
+        if alpha <= Exact::splat((), 0.0) {
+            return self.gathered.rgb;
+        }
+        self.gathered.rgb * ((one - self.transmittances[i]) / alpha)
     }
 }
 
@@ -99,30 +115,36 @@ impl<C: Classify> CompositeRow<C> {
         shares: [f64; MOST_COLUMNS],
         depth_m: Exact,
     ) {
+        let part_share = Exact::from(shares.iter().sum::<f64>());
+        let mut is_any_open = false;
         for (target, i) in sweep.targets(column, segment.slab) {
-            let (pixel, gathered) = (&mut self.pixels[target], &mut segment.gathered[i]);
-            if self.least_transmittance < pixel.transmittance * gathered.transmittance {
-                gathered.add((), sample.rgb, (sample.log2 * Exact::from(shares[i])).exp2());
-                pixel.note_hit((), pixel.transmittance * gathered.transmittance, depth_m);
+            let (pixel, transmittance) = (&mut self.pixels[target], &mut segment.transmittances[i]);
+            if self.least_transmittance < pixel.transmittance * *transmittance {
+                *transmittance *= (sample.log2 * Exact::from(shares[i])).exp2();
+                pixel.note_hit((), pixel.transmittance * *transmittance, depth_m);
+                is_any_open = true;
             }
+        }
+        if is_any_open {
+            segment.gathered.add((), sample.rgb, (sample.log2 * part_share).exp2());
         }
     }
 
     /// Composites a segment behind what its pixels have gathered.
     fn composite(&mut self, sweep: &Sweep<'_>, column: i32, segment: &Segment) {
         for (target, i) in sweep.targets(column, segment.slab) {
-            let (pixel, gathered) = (&mut self.pixels[target], &segment.gathered[i]);
-            pixel.rgb = gathered.rgb.mul_add(pixel.transmittance, pixel.rgb);
-            pixel.transmittance *= gathered.transmittance;
+            let pixel = &mut self.pixels[target];
+            pixel.rgb = segment.rgb(i).mul_add(pixel.transmittance, pixel.rgb);
+            pixel.transmittance *= segment.transmittances[i];
         }
     }
 
     /// Whether a ray meets a pixel that has not ended, from its segment on.
     fn is_any_open(&self, sweep: &Sweep<'_>, column: i32, segment: &Segment, last_slab: i32) -> bool {
         let is_open = |transmittance: Exact| self.least_transmittance < transmittance;
-        let is_open_here = sweep.targets(column, segment.slab).any(|(target, i)| {
-            is_open(self.pixels[target].transmittance * segment.gathered[i].transmittance)
-        });
+        let is_open_here = sweep
+            .targets(column, segment.slab)
+            .any(|(target, i)| is_open(self.pixels[target].transmittance * segment.transmittances[i]));
         is_open_here
             || sweep
                 .targets_between(column, segment.slab - 1, last_slab)

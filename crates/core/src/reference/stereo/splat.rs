@@ -3,7 +3,7 @@
 use crate::stereo::{Epipolar, Slabs};
 
 /// Which derived columns a sample contributes to. What several share is its extinction, so that an opaque sample stays
-/// opaque.
+/// opaque; the colour of a ray's samples in a slab is the same for all, so that what these hide from the ray stays hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Splat {
     /// The one nearest to its middle (SP).
