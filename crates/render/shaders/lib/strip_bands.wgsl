@@ -37,3 +37,17 @@ fn columns_before(column: u32) -> vec2u {
 fn last_of(columns: vec2u) -> u32 {
     return select(firstLeadingBit(columns.x), WORD_COLUMNS + firstLeadingBit(columns.y), columns.y != 0u);
 }
+
+// Whether any listed column reaches one of some derived columns.
+fn is_reached(band: u32, first_derived: i32, last_derived: i32) -> bool {
+    let first = first_derived + view.pair.furthest - view.pair.first_column;
+    let last = last_derived + view.pair.nearest - view.pair.first_column;
+    let width = i32(view.pair.width);
+    var reaching = vec2u(0u);
+    for (var strip = max(first, 0) / width; strip <= min(last / width, i32(view.pair.count) - 1); strip++) {
+        let before_first = columns_before(u32(clamp(first - strip * width, 0, width)));
+        let to_last = columns_before(u32(clamp(last + 1 - strip * width, 0, width)));
+        reaching |= strips.bands[strip_band_at(band, u32(strip))].listed & to_last & ~before_first;
+    }
+    return any(reaching != vec2u(0u));
+}
