@@ -3,10 +3,10 @@
 use crate::backend::Engine;
 use crate::camera::Stereo;
 use crate::failure::Failure;
-use crate::pair_cost::{self, PairJob};
+use crate::pair_cost;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
-use wheatstone_core::cast::CastParameters;
+use wheatstone_core::scene::Mode;
 use wheatstone_render::{Form, LayerFormat, PairMethod, Quality};
 
 /// Flags of stereo pairs.
@@ -17,7 +17,7 @@ pub(crate) struct PairArgs {
     #[arg(long, value_enum, value_name = "METHOD")]
     stereo_method: Option<MethodName>,
 
-    /// How much is done for the eye that is not cast [default: fast].
+    /// How much is done for the eye that is not cast [default: repaired for strips and auto, else fast].
     #[arg(long, value_enum, value_name = "QUALITY")]
     stereo_quality: Option<QualityName>,
 
@@ -83,6 +83,11 @@ impl FormName {
         }
     }
 
+    /// Whether its derived pictures can be repaired.
+    pub(crate) fn is_repairable(self) -> bool {
+        self == Self::Strips
+    }
+
     fn form(self) -> Form {
         match self {
             Self::Strips => Form::Strips,
@@ -98,6 +103,8 @@ impl FormName {
 pub(crate) enum QualityName {
     /// Samples of the other eye's rays alone.
     Fast,
+    /// Where its error would show, the picture is cast; only of strips.
+    Repaired,
 }
 
 impl QualityName {
@@ -105,12 +112,14 @@ impl QualityName {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Fast => "fast",
+            Self::Repaired => "repaired",
         }
     }
 
     fn quality(self) -> Quality {
         match self {
             Self::Fast => Quality::Fast,
+            Self::Repaired => Quality::Repaired,
         }
     }
 }
@@ -177,9 +186,10 @@ impl PairArgs {
             ("--reference-eye", self.reference_eye.is_some()),
         ];
         if stereo.has_both_eyes() {
+            let method = self.stereo_method.unwrap_or(MethodName::Auto);
             return Ok(Some(PairRequest {
-                method: self.stereo_method.unwrap_or(MethodName::Auto),
-                quality: self.stereo_quality.unwrap_or(QualityName::Fast),
+                method,
+                quality: self.quality(method)?,
                 reference: self.reference_eye.unwrap_or(Eye::Left),
             }));
         }
@@ -188,6 +198,19 @@ impl PairArgs {
                 "{flag} needs --stereo side-by-side, top-bottom, anaglyph or wobble"
             ))),
             None => Ok(None),
+        }
+    }
+
+    fn quality(&self, method: MethodName) -> Result<QualityName, Failure> {
+        match (method, self.stereo_quality) {
+            (MethodName::SinglePass(form), Some(QualityName::Repaired)) if !form.is_repairable() => {
+                let name = form.name();
+                Err(Failure::input(format!(
+                    "--stereo-method {name} --stereo-quality repaired: only strips are repaired"
+                )))
+            }
+            (MethodName::SinglePass(form), None) if !form.is_repairable() => Ok(QualityName::Fast),
+            (_, quality) => Ok(quality.unwrap_or(QualityName::Repaired)),
         }
     }
 }
@@ -199,21 +222,11 @@ impl PairRequest {
     }
 
     /// How a caster is to make the pair; nothing for two casts.
-    pub(crate) fn pairing(
-        &self,
-        engine: &Engine<'_>,
-        parameters: &CastParameters,
-        leaps: bool,
-    ) -> Option<Pairing> {
+    pub(crate) fn pairing(&self, engine: &Engine<'_>, mode: Mode) -> Option<Pairing> {
         let form = match (self.method, engine) {
             (MethodName::TwoPass, _) | (MethodName::Auto, Engine::Cpu(_)) => None,
             (MethodName::SinglePass(form), _) => Some(form),
-            (MethodName::Auto, Engine::Gpu(_)) => pair_cost::cheapest(&PairJob {
-                mode: parameters.mode,
-                shading_samples: parameters.shading_samples(),
-                leaps,
-                quality: self.quality,
-            }),
+            (MethodName::Auto, Engine::Gpu(_)) => pair_cost::cheapest(mode),
         };
         form.map(|form| Pairing { form, quality: self.quality, reference: self.reference })
     }

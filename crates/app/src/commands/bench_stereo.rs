@@ -80,7 +80,7 @@ pub(crate) struct StereoBenchArgs {
     #[arg(long, value_name = "METHODS", value_enum, value_delimiter = ',')]
     methods: Vec<FormName>,
 
-    /// Qualities of the derived eye [default: all].
+    /// Qualities of the derived eye; only strips are repaired [default: fast,repaired].
     #[arg(long, value_name = "QUALITIES", value_enum, value_delimiter = ',')]
     qualities: Vec<QualityName>,
 
@@ -120,9 +120,10 @@ struct Measured {
 pub(crate) fn run(args: &StereoBenchArgs) -> Result<(), Failure> {
     let skipping = args.skip.resolve(SkipName::Auto)?;
     [&args.plot, &args.error_pictures].into_iter().flatten().try_for_each(|folder| make_folder(folder))?;
+    let pairings = args.pairings()?;
     let mut measured = Measured::default();
     for volume in &args.volumes {
-        args.measure_volume(volume, &skipping, &mut measured)?;
+        args.measure_volume(volume, &skipping, &pairings, &mut measured)?;
     }
     if let Some(folder) = &args.plot {
         charts::draw_speed_ups(folder, &measured.rows)?;
@@ -150,6 +151,7 @@ impl StereoBenchArgs {
         &self,
         described: &str,
         skipping: &Skipping,
+        pairings: &[Pairing],
         measured: &mut Measured,
     ) -> Result<(), Failure> {
         let Opened { volume, name, benchmark } = open(described)?;
@@ -183,7 +185,7 @@ impl StereoBenchArgs {
                     frames: self.frames,
                     keeps_worst: self.error_pictures.is_some(),
                 };
-                for tally in measure(&mut engine, shot, &turn, &self.pairings(), &bar)? {
+                for tally in measure(&mut engine, shot, &turn, pairings, &bar)? {
                     let row = Row::new(&name, distance_m, &parameters, &tally);
                     if let (Some(folder), Some(worst)) = (&self.error_pictures, &tally.worst) {
                         error_pictures::write(folder, &row, worst)?;
@@ -197,7 +199,7 @@ impl StereoBenchArgs {
             let bar = Bar::new("layers", self.layers_sweep.len() as u64 * layers::counts().count() as u64);
             for &side in &self.layers_sweep {
                 let sweep = Sweep { volume: &name, eyes: Eyes { size: [side; 2] }, frames: self.frames };
-                measured.layers.extend(layers::measure(&mut engine, shot, &sweep, &self.pairings(), &bar)?);
+                measured.layers.extend(layers::measure(&mut engine, shot, &sweep, pairings, &bar)?);
             }
         }
         measured.device = Some(Device::of(&engine));
@@ -209,12 +211,23 @@ impl StereoBenchArgs {
         u64::from(self.frames) + 1
     }
 
-    fn pairings(&self) -> Vec<Pairing> {
+    /// What is asked for and can be made, with a note of what is asked for by name and cannot.
+    fn pairings(&self) -> Result<Vec<Pairing>, Failure> {
         let forms = if self.methods.is_empty() { FormName::value_variants() } else { &self.methods };
         let qualities =
             if self.qualities.is_empty() { QualityName::value_variants() } else { &self.qualities };
         let of_form =
             |&form| qualities.iter().map(move |&quality| Pairing { form, quality, reference: Eye::Left });
-        forms.iter().flat_map(of_form).collect()
+        let can_be_made =
+            |pairing: &Pairing| pairing.quality != QualityName::Repaired || pairing.form.is_repairable();
+        let (made, left_out): (Vec<_>, Vec<_>) = forms.iter().flat_map(of_form).partition(can_be_made);
+        if made.is_empty() {
+            return Err(Failure::input("--qualities repaired: only strips are repaired"));
+        }
+        if !self.qualities.is_empty() && !left_out.is_empty() {
+            let names: Vec<&str> = left_out.iter().map(|pairing| pairing.form.name()).collect();
+            eprintln!("note: only strips are repaired: repaired {} left out", names.join(", "));
+        }
+        Ok(made)
     }
 }

@@ -183,7 +183,6 @@ impl RenderArgs {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let bar = Bar::new("frames", u64::from(frames));
         let shot = engine.prepare(parameters, skipping)?;
-        let leaps = engine.leaping(shot).block_size.is_some();
         let mut made = Made {
             frames_ms: Vec::new(),
             samples: 0,
@@ -191,7 +190,7 @@ impl RenderArgs {
             white: self.white_of_all(engine, shot)?,
             leaping: engine.leaping(shot).clone(),
             gradient_map: engine.gradient_map_size(shot),
-            pairing: request.and_then(|request| request.pairing(engine, parameters, leaps)),
+            pairing: request.and_then(|request| request.pairing(engine, parameters.mode)),
             pair_bytes: None,
             picture_size: [0; 2],
             outputs: Vec::new(),

@@ -250,17 +250,17 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
     let two_pass = render("two.png", &["--backend", "gpu", "--stereo-method", "two-pass"]).json();
     assert_eq!(two_pass["stereo_method"], "two-pass");
     let ways = [
-        ("strips", "left", 0),
-        ("strips", "right", 48),
-        ("tiles", "right", 48),
-        ("layers", "left", 0),
-        ("layers-16", "left", 0),
+        ("strips", "repaired", "left", 0),
+        ("strips", "repaired", "right", 48),
+        ("tiles", "fast", "right", 48),
+        ("layers", "fast", "left", 0),
+        ("layers-16", "fast", "left", 0),
     ];
-    for (method, eye, half) in ways {
+    for (method, quality, eye, half) in ways {
         // Asked for by name, a pair of one cast is made on a GPU, software or not.
         let one = render("one.png", &["--stereo-method", method, "--reference-eye", eye]).json();
         assert_eq!((&one["backend"], &one["stereo_method"]), (&"gpu".into(), &method.into()), "{one}");
-        assert_eq!((&one["stereo_quality"], &one["reference_eye"]), (&"fast".into(), &eye.into()));
+        assert_eq!((&one["stereo_quality"], &one["reference_eye"]), (&quality.into(), &eye.into()));
         assert!(one["stereo_bytes"].as_u64().unwrap() > 0, "{one}");
         let compared = bench.run(&["compare", "two.png", "one.png", "--json"]).json();
         assert!(compared["dssim"].as_f64().unwrap() <= 0.01, "{compared}");
@@ -272,7 +272,10 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
     }
     let same_eyes = render("zero.png", &["--stereo-method", "strips", "--eye-distance", "0"]).json();
     assert_eq!(same_eyes["stereo_method"], "strips");
-    assert_eq!(render("xray.png", &["--backend", "gpu", "--mode", "xray"]).json()["stereo_method"], "strips");
+    let xray = render("xray.png", &["--backend", "gpu", "--mode", "xray"]).json();
+    assert_eq!((&xray["stereo_method"], &xray["stereo_quality"]), (&"strips".into(), &"repaired".into()));
+    let fast = render("fast.png", &["--stereo-method", "strips", "--stereo-quality", "fast"]).json();
+    assert_eq!(fast["stereo_quality"], "fast");
     let mip = ["--backend", "gpu", "--mode", "mip"];
     let silent = render("mip.png", &mip);
     assert!(

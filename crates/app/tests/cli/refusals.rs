@@ -58,7 +58,7 @@ fn impossible_values_name_their_flag_and_range() {
         (&["--block-size", "-4"], "--block-size"),
         (&["--gradient-map", "12"], "--gradient-map"),
         (&["--stereo-method", "layers-of-cake"], "two-pass"),
-        (&["--stereo-quality", "perfect"], "fast"),
+        (&["--stereo-quality", "perfect"], "repaired"),
         (&["--reference-eye", "third"], "left"),
         (&["--show", "depth"], "samples"),
         (&["--show", "samples:0"], "above 0"),
@@ -80,6 +80,8 @@ fn contradictions_are_refused() {
     refuses(&bench, &["--stereo-method", "two-pass"], "--stereo-method needs --stereo side-by-side");
     refuses(&bench, &["--stereo-quality", "fast", "--stereo", "left"], "--stereo-quality needs --stereo");
     refuses(&bench, &["--reference-eye", "right", "--stereo", "right"], "--reference-eye needs --stereo");
+    let layers = ["--stereo", "anaglyph", "--stereo-method", "layers", "--stereo-quality", "repaired"];
+    refuses(&bench, &layers, "only strips are repaired");
     let heat_map = ["--show", "samples", "--stereo", "anaglyph", "--stereo-method", "strips"];
     refuses(&bench, &heat_map, "two-pass");
     refuses(&bench, &["--stereo", "wobble"], ".gif");
@@ -147,6 +149,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         &["bench", "stereo", "box:8", "--distance", "far"],
         &["bench", "stereo", "box:8", "--shading-samples", "6"],
         &["bench", "stereo", "box:8", "--methods", "two-pass"],
+        &["bench", "stereo", "box:8", "--methods", "tiles", "--qualities", "repaired"],
         &["bench", "stereo"],
         &["bench", "skip", "beetle:0"],
         &["bench", "skip", "beetle:8", "--block-sizes", "4,99"],

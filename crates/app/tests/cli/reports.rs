@@ -292,7 +292,7 @@ fn bench_stereo_lists_every_way_and_draws_charts() {
     }
     let bench = Bench::new();
     let small = ["bench", "stereo", "sphere.nrrd", "--size", "48x48", "--frames", "2", "--shadings", "none"];
-    let look = ["--methods", "strips", "--qualities", "fast", "--tf", "ramp:0.2..1"];
+    let look = ["--methods", "strips", "--qualities", "fast,repaired", "--tf", "ramp:0.2..1"];
     let folders = ["--plot", "plots", "--error-pictures", "errors", "--layers-sweep=24", "--json"];
     let run = bench.run(&[&small[..], &look, &folders].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);
@@ -300,7 +300,7 @@ fn bench_stereo_lists_every_way_and_draws_charts() {
     assert_eq!(keys(&json), ["device", "frames", "layers", "rows", "size"]);
     assert_eq!(keys(&json["device"]), ["backend", "cpu_threads", "driver", "name"]);
     let rows = json["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 2, "{}", run.stderr);
+    assert_eq!(rows.len(), 4, "{}", run.stderr);
     let row_keys = [
         "bytes",
         "clear_ms",
@@ -313,6 +313,7 @@ fn bench_stereo_lists_every_way_and_draws_charts() {
         "method",
         "quality",
         "reference_difference",
+        "repair_ms",
         "shading",
         "shading_samples",
         "t_left_ms",
@@ -330,12 +331,20 @@ fn bench_stereo_lists_every_way_and_draws_charts() {
         assert!(number("dssim_worst") >= number("dssim_mean"), "{row}");
         assert!(number("dssim_covered_mean") >= number("dssim_mean"), "{row}");
     }
+    for of_distance in rows.chunks(2) {
+        let [fast, repaired] = of_distance else { panic!("{of_distance:?}") };
+        assert_eq!((&fast["quality"], &repaired["quality"]), (&"fast".into(), &"repaired".into()));
+        assert_eq!(fast["repair_ms"], 0.0);
+        assert!(repaired["repair_ms"].as_f64() > Some(0.0), "{repaired}");
+        assert!(repaired["bytes"].as_u64() > fast["bytes"].as_u64(), "{repaired}");
+    }
+    assert!(rows[0]["bytes"].as_u64() > rows[2]["bytes"].as_u64(), "further off, fewer slabs");
     // Fewer pixels keep to 32 layers from nearer.
-    assert!(rows[0]["distance_m"].as_f64().unwrap() < 0.1 && rows[1]["distance_m"] == 1.2);
+    assert!(rows[0]["distance_m"].as_f64().unwrap() < 0.1 && rows[2]["distance_m"] == 1.2);
     let layers = json["layers"].as_array().unwrap();
     assert_eq!(
         layers.iter().map(|row| row["layers"].as_u64().unwrap()).collect::<Vec<_>>(),
-        [16, 24, 32, 40, 48, 56, 64]
+        [16, 16, 24, 24, 32, 32, 40, 40, 48, 48, 56, 56, 64, 64]
     );
     assert!(layers.iter().all(|row| row["side"] == 24 && row["composite_ms"].as_f64().unwrap() > 0.0));
     for chart in ["sphere-1.20-speed-up.svg", "sphere-strips_fast-layers.svg"] {
@@ -348,8 +357,15 @@ fn bench_stereo_lists_every_way_and_draws_charts() {
         let picture = image::open(bench.path(&name)).unwrap().into_rgb8();
         assert!(picture.pixels().any(|pixel| pixel.0 != [0; 3]), "{what}");
     }
-    let table = bench.run(&[&small[..], &look, &["--distance", "1"]].concat()).stdout;
-    assert_eq!(table.lines().filter(|line| line.starts_with("sphere ")).count(), 1, "{table}");
+    let near = |flags: &[&str]| bench.run(&[&small[..], &["--distance", "1"], flags].concat());
+    let table_lines = |flags: &[&str]| {
+        let run = near(flags);
+        (run.stdout.lines().filter(|line| line.starts_with("sphere ")).count(), run.stderr)
+    };
+    let (lines, notes) = table_lines(&["--methods", "strips,tiles"]);
+    assert!(lines == 3 && !notes.contains("note: "), "{lines}: {notes}");
+    let (lines, notes) = table_lines(&["--methods", "strips,tiles", "--qualities", "repaired"]);
+    assert!(lines == 1 && notes.contains("note: only strips are repaired"), "{lines}: {notes}");
 }
 
 #[test]

@@ -19,7 +19,7 @@ const LOCKSTEP_RAYS: u32 = 8;
 /// What a pair has taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PairReport {
-    /// Bytes on the device besides both pictures.
+    /// Bytes that this pair needs on the device besides both pictures.
     pub bytes: u64,
     /// Time of emptying what the last pair has left.
     pub clear: Duration,
@@ -92,10 +92,7 @@ impl Renderer {
         }?;
         match method.quality {
             Quality::Fast => Ok(report),
-            Quality::Repaired => {
-                let bytes = report.bytes + frame.repairs.byte_size();
-                Ok(PairReport { bytes, repair: self.cast_listed(&frame, targets[1])?, ..report })
-            }
+            Quality::Repaired => self.repair(&frame, targets[1], report),
         }
     }
 

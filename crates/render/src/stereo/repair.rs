@@ -1,7 +1,7 @@
 //! Tiles of the derived picture that are cast directly.
 
 use super::PairError;
-use super::pair::PairFrame;
+use super::pair::{PairFrame, PairReport};
 use crate::cast_pass::{self, Workgroups};
 use crate::gpu::Gpu;
 use crate::groups::{Bindings, RAY_STATE_BYTES};
@@ -37,13 +37,13 @@ impl RepairList {
         };
         Self {
             groups: buffer("workgroups", GROUPS_BYTES, wgpu::BufferUsages::INDIRECT),
-            tiles: buffer("tiles", 4 * (1 + tiles_of(size)), wgpu::BufferUsages::empty()),
+            tiles: buffer("tiles", tile_bytes(size), wgpu::BufferUsages::empty()),
         }
     }
 
     /// Whether there is room for all tiles of a picture.
     pub(crate) fn has_room(&self, size: [u32; 2]) -> bool {
-        self.tiles.size() >= 4 * (1 + tiles_of(size))
+        self.tiles.size() >= tile_bytes(size)
     }
 
     /// Empties the list.
@@ -51,20 +51,21 @@ impl RepairList {
         queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&[GROUPS_PER_ROW, 0, 1]));
         queue.write_buffer(&self.tiles, 0, bytemuck::bytes_of(&0_u32));
     }
+}
 
-    /// Bytes on the device.
-    pub(crate) fn byte_size(&self) -> u64 {
-        self.groups.size() + self.tiles.size()
-    }
+/// Bytes of the number of listed tiles, and of all tiles of a picture.
+fn tile_bytes(size: [u32; 2]) -> u64 {
+    4 * (1 + tiles_of(size))
 }
 
 impl Renderer {
-    /// Casts the listed tiles of the derived picture and waits until they are done.
-    pub(super) fn cast_listed(
+    /// Casts the listed tiles of the derived picture, waits until they are done and adds what that takes to the pair's report.
+    pub(super) fn repair(
         &mut self,
         frame: &PairFrame<'_>,
         derived: &Target,
-    ) -> Result<Duration, PairError> {
+        pair: PairReport,
+    ) -> Result<PairReport, PairError> {
         let PairFrame { gpu, prepared, epipolar, .. } = frame;
         let [width, height] = frame.size();
         let most_samples = prepared.parameters.most_samples_per_ray();
@@ -81,13 +82,14 @@ impl Renderer {
         let pipeline = self.casts.pipeline(gpu, if is_whole { variant } else { variant.in_parts() })?;
         let mut view = ViewUniform::new(&prepared.parameters, epipolar.derived());
         view.sample_limit = limit;
-        let mut time = Duration::ZERO;
+        let mut repair = Duration::ZERO;
         while view.first_sample < most_samples {
             gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&view));
             let workgroups = Workgroups::Listed(&frame.repairs.groups);
-            time += frame.run(|encoder| cast_pass::dispatch(encoder, &pipeline, &bindings, workgroups))?;
+            repair += frame.run(|encoder| cast_pass::dispatch(encoder, &pipeline, &bindings, workgroups))?;
             view.first_sample = view.first_sample.saturating_add(limit);
         }
-        Ok(time)
+        let bytes = pair.bytes + GROUPS_BYTES + tile_bytes(frame.size()) + state_bytes;
+        Ok(PairReport { bytes, repair, ..pair })
     }
 }

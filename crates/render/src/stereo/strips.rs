@@ -96,7 +96,8 @@ impl StripPass {
         let list = self.list.pipeline(frame.gpu, frame.prepared.variant)?;
         let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
         let merge = self.merge.pipeline(frame.gpu, frame.prepared.variant)?;
-        let buffers = self.buffers(frame, &strips)?;
+        let sizes = self.sizes(frame, &strips);
+        let buffers = self.buffers(frame.gpu, sizes)?;
         let group = self.group(frame, &buffers);
         let bindings = frame.bind(Eye::Reference, &strips);
         let [_, bands] = frame.squares(Eye::Reference);
@@ -123,28 +124,31 @@ impl StripPass {
             let [pixels_x, pixels_y] = self.merged_pixels;
             pass.dispatch_workgroups(width.div_ceil(pixels_x), height.div_ceil(pixels_y), 1);
         })?;
-        let bytes = buffers.sizes.iter().sum();
         self.kept = Some(buffers);
-        Ok(PairReport { bytes, cast, composite, ..PairReport::default() })
+        Ok(PairReport { bytes: sizes.iter().sum(), cast, composite, ..PairReport::default() })
     }
 
-    /// Room for a pair: that of the last pair if it is large enough. Each strip empties its own sums.
-    fn buffers(&mut self, frame: &PairFrame<'_>, strips: &PairUniform) -> Result<StripBuffers, GpuError> {
+    /// Bytes of the buffers of a pair.
+    fn sizes(&self, frame: &PairFrame<'_>, strips: &PairUniform) -> [u64; 5] {
         let height = frame.size()[1];
         let strip_rows = u64::from(height) * u64::from(strips.count);
         let sums = strip_rows * u64::from(STRIP_COLUMNS + frame.slabs.layers() - 1);
         let strip_bands = u64::from(height.div_ceil(BAND_ROWS)) * u64::from(strips.count);
-        let sizes = [
+        [
             sums * COLOR_BYTES,
             sums * DEPTH_BYTES,
             (1 + strip_bands) * BAND_BYTES,
             strip_rows * PROGRESS_BYTES,
             if self.notes_cuts { sums * CUT_BYTES } else { CUT_BYTES },
-        ];
+        ]
+    }
+
+    /// Room for a pair: that of the last pair if it is large enough. Each strip empties its own sums.
+    fn buffers(&mut self, gpu: &Gpu, sizes: [u64; 5]) -> Result<StripBuffers, GpuError> {
         let is_enough = |kept: &StripBuffers| kept.sizes.iter().zip(&sizes).all(|(kept, size)| kept >= size);
         match self.kept.take().filter(is_enough) {
             Some(kept) => Ok(kept),
-            None => StripBuffers::new(frame.gpu, sizes),
+            None => StripBuffers::new(gpu, sizes),
         }
     }
 

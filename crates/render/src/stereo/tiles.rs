@@ -66,7 +66,7 @@ impl PairTilePass {
             let [squares_x, squares_y] = frame.squares(Eye::Derived);
             pass.dispatch_workgroups(squares_x, squares_y, 1);
         })?;
-        let bytes = buffers.reached * PARTIAL_BYTES.iter().sum::<u64>();
+        let bytes = reached * PARTIAL_BYTES.iter().sum::<u64>();
         self.kept = Some(buffers);
         Ok(PairReport { bytes, cast, composite, ..PairReport::default() })
     }

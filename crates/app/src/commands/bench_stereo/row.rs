@@ -23,6 +23,7 @@ pub(super) struct Row {
     bytes: u64,
     clear_ms: f64,
     composite_ms: f64,
+    repair_ms: f64,
     reference_difference: f32,
 }
 
@@ -60,6 +61,7 @@ impl Row {
             bytes: tally.bytes,
             clear_ms: median(&tally.clear_ms),
             composite_ms: median(&tally.composite_ms),
+            repair_ms: median(&tally.repair_ms),
             reference_difference: tally.reference_difference,
         }
     }
@@ -83,6 +85,7 @@ impl Row {
             "bytes": self.bytes,
             "clear_ms": self.clear_ms,
             "composite_ms": self.composite_ms,
+            "repair_ms": self.repair_ms,
             "reference_difference": self.reference_difference,
         })
     }
@@ -90,7 +93,7 @@ impl Row {
 
 pub(super) fn to_table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
-        "{:<14} {:>5} {:<9} {:<8} {:<14} {:>7} {:>8} {:>8} {:>8} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>7}",
+        "{:<14} {:>5} {:<9} {:<8} {:<14} {:>7} {:>8} {:>8} {:>8} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>7}",
         "volume",
         "m",
         "method",
@@ -107,12 +110,13 @@ pub(super) fn to_table(rows: &[Row]) -> String {
         "worst",
         "clear ms",
         "comp. ms",
+        "rep. ms",
         "KiB",
         "ref."
     )];
     for row in rows {
         lines.push(format!(
-            "{:<14} {:>5.2} {:<9} {:<8} {:<14} {:>7} {:>8.1} {:>8.1} {:>8.1} {:>6.2} {:>8.5} {:>8.5} {:>8.5} {:>8.5} {:>8.1} {:>8.1} {:>9.0} {:>7.4}",
+            "{:<14} {:>5.2} {:<9} {:<8} {:<14} {:>7} {:>8.1} {:>8.1} {:>8.1} {:>6.2} {:>8.5} {:>8.5} {:>8.5} {:>8.5} {:>8.1} {:>8.1} {:>8.1} {:>9.0} {:>7.4}",
             row.volume,
             row.distance_m,
             row.pairing.form.name(),
@@ -129,6 +133,7 @@ pub(super) fn to_table(rows: &[Row]) -> String {
             row.dssim_covered.worst,
             row.clear_ms,
             row.composite_ms,
+            row.repair_ms,
             row.bytes as f64 / 1024.0,
             row.reference_difference,
         ));

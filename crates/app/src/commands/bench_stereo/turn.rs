@@ -38,6 +38,7 @@ pub(super) struct Tally {
     pub(super) pair_ms: Vec<f64>,
     pub(super) clear_ms: Vec<f64>,
     pub(super) composite_ms: Vec<f64>,
+    pub(super) repair_ms: Vec<f64>,
     pub(super) bytes: u64,
     /// Of the whole picture.
     pub(super) dssim: Vec<f64>,
@@ -66,6 +67,7 @@ impl Tally {
             pair_ms: Vec::new(),
             clear_ms: Vec::new(),
             composite_ms: Vec::new(),
+            repair_ms: Vec::new(),
             bytes: 0,
             dssim: Vec::new(),
             dssim_covered: Vec::new(),
@@ -91,6 +93,7 @@ impl Tally {
                 self.pair_ms.push(milliseconds(pair.time));
                 self.clear_ms.push(milliseconds(pair.report.clear));
                 self.composite_ms.push(milliseconds(pair.report.composite));
+                self.repair_ms.push(milliseconds(pair.report.repair));
                 self.bytes = self.bytes.max(pair.report.bytes);
                 Ok(Some(pictures(engine)?))
             }
