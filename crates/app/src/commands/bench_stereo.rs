@@ -37,7 +37,7 @@ const SAMPLING_FACTOR: f32 = 2.0;
 ///
 /// The eyes are 0.065 m apart, look in parallel, have a vertical field of view of 110 degrees, and turn once about the volume's
 /// vertical axis. Steps are half a voxel long; rays end at an opacity of 0.99. Each frame is made in every way in turn, in changing
-/// order. The left eye is cast, the right one derived. GPU only; that includes software Vulkan.
+/// order, three times in a row, of which the fastest counts. The left eye is cast, the right one derived. GPU only; that includes software Vulkan.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     wheatstone bench stereo bonsai.nii.gz box:256 --up A\n  \

@@ -1,11 +1,12 @@
 //! One turn about the volume, every frame made in every way.
 
 use super::eyes::Eyes;
-use crate::backend::{Engine, NoPair, Shot, milliseconds};
+use crate::backend::{Engine, NoPair, PairCast, Shot, milliseconds};
 use crate::failure::Failure;
 use crate::pairing::Pairing;
 use crate::progress::Bar;
 use anyhow::Context as _;
+use std::time::Duration;
 use wheatstone_core::image::{Image, RgbImage};
 use wheatstone_core::metrics::{SsimMap, dssim};
 use wheatstone_core::view::View;
@@ -88,7 +89,7 @@ impl Tally {
         if self.is_refused {
             return Ok(None);
         }
-        match engine.cast_pair(shot, views, &self.pairing) {
+        match fastest_pair(engine, shot, views, &self.pairing) {
             Ok(pair) => {
                 self.pair_ms.push(milliseconds(pair.time));
                 self.clear_ms.push(milliseconds(pair.report.clear));
@@ -124,6 +125,33 @@ impl Tally {
         }
         Ok(())
     }
+}
+
+/// Times that each way makes a frame; the fastest counts: other work on a machine adds to a time and never takes from it.
+const REPEATS: usize = 3;
+
+fn fastest_cast(engine: &mut Engine<'_>, shot: Shot, view: View) -> Result<Duration, Failure> {
+    let mut fastest = engine.cast(shot, &[view])?;
+    for _ in 1..REPEATS {
+        fastest = fastest.min(engine.cast(shot, &[view])?);
+    }
+    Ok(fastest)
+}
+
+fn fastest_pair(
+    engine: &mut Engine<'_>,
+    shot: Shot,
+    views: [View; 2],
+    pairing: &Pairing,
+) -> Result<PairCast, NoPair> {
+    let mut fastest = engine.cast_pair(shot, views, pairing)?;
+    for _ in 1..REPEATS {
+        let pair = engine.cast_pair(shot, views, pairing)?;
+        if pair.time < fastest.time {
+            fastest = pair;
+        }
+    }
+    Ok(fastest)
 }
 
 fn pictures(engine: &mut Engine<'_>) -> Result<[Image; 2], Failure> {
@@ -163,7 +191,7 @@ pub(super) fn measure(
         let mut pairs: Vec<Option<[Image; 2]>> = tallies.iter().map(|_| None).collect();
         for way in order(frame as usize, 2 + tallies.len()) {
             if way < 2 {
-                mono_ms[way].push(milliseconds(engine.cast(shot, &[views[way]])?));
+                mono_ms[way].push(milliseconds(fastest_cast(engine, shot, views[way])?));
                 own[way] = engine.read()?.pop().map(|cast| cast.image);
             } else {
                 pairs[way - 2] = tallies[way - 2].cast(engine, shot, turn.name, views)?;
