@@ -2,7 +2,7 @@ import package::lib::accumulate::{accumulate, finish_ray};
 import package::lib::ray::{ray_of_pixel};
 import package::lib::resume::{begin_ray, keep_ray};
 import package::lib::target::{store};
-import package::lib::tiles::{LANES, pixel_of_lane};
+import package::lib::tiles::{LANES, pixel_of_lane, store_miss};
 import package::lib::view::{is_outside_piece, view};
 
 // Casts a piece of a picture: `row_count` rows from `first_row`, samples [first_sample, first_sample + sample_limit).
@@ -14,6 +14,7 @@ fn cast_rays(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
     }
     let ray = ray_of_pixel(pixel);
     if ray.sample_count == 0u {
+        store_miss(pixel);
         return;
     }
     let slot = (pixel.y - view.first_row) * view.width + pixel.x;

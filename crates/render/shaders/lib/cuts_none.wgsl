@@ -10,6 +10,6 @@ fn is_cut_at(at: u32, alpha_in_front: f32) -> bool {
     return false;
 }
 
-fn note_cut(place: SegmentPlace, ray: Ray, ended: SegmentedRay, noted: i32) -> i32 {
+fn note_cut(place: SegmentPlace, ray: Ray, ended: SegmentedRay, noted: vec2i) -> vec2i {
     return noted;
 }

@@ -1,3 +1,5 @@
+import package::lib::ray_state::{NOTHING_HIT, Pixel};
+import package::lib::target::{store};
 import package::lib::tile_list::{GROUPS_PER_ROW, TILE, pixel_in_tile, tile_list};
 
 // The pixels of listed tiles: a workgroup takes one tile.
@@ -14,4 +16,9 @@ fn pixel_of_lane(group: vec3u, lane: u32) -> vec2u {
         return NO_PIXEL;
     }
     return pixel_in_tile(tile_list.tiles[slot], lane);
+}
+
+// Makes a pixel blank whose ray misses: a listed tile may hold something.
+fn store_miss(pixel: vec2u) {
+    store(pixel, Pixel(vec4f(0.0), NOTHING_HIT, 0u, 0u));
 }

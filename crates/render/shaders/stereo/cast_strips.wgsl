@@ -20,13 +20,13 @@ struct Progress {
     left: vec2u,
     // 1 if the last of them is begun.
     is_begun: u32,
-    // The first derived column that has been looked at for what rays leave out.
-    noted: i32,
+    // The first and the last derived column that have been looked at for what rays leave out.
+    noted: vec2i,
     ray: SegmentedRay,
 }
 
-// More than any column.
-const NOTHING_NOTED: i32 = 0x7fffffff;
+// No columns.
+const NOTHING_NOTED = vec2i(0x7fffffff, -0x7fffffff);
 
 @group(3) @binding(3) var<storage, read_write> progress: array<Progress>;
 // Empties the first partial sums of a strip.

@@ -51,7 +51,7 @@ fn merge_and_list(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation
             here = after;
         }
     }
-    let count = f32(TILE.x * TILE.y);
+    let count = f32((end.x - first.x) * max(end.y - first.y, 1u));
     let variance = max(sum_of_squares / count - sum * sum / (count * count), vec4f(0.0));
     let deviation = sqrt(dot(variance, vec4f(1.0)));
     if is_cut || roughness / count > LARGEST_ROUGHNESS * (deviation + CONTRAST) {

@@ -148,7 +148,7 @@ impl PairFrame<'_> {
         let samples = self.parameters().most_samples_per_ray();
         let iterations = samples
             .saturating_mul(self.prepared.iterations_per_sample)
-            .saturating_add(LOCKSTEP_RAYS * self.slabs.layers());
+            .saturating_add(LOCKSTEP_RAYS.saturating_mul(self.slabs.layers()));
         if iterations > ITERATION_LIMIT { Err(PairError::LongRays { samples }) } else { Ok(()) }
     }
 

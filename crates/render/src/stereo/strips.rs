@@ -23,7 +23,7 @@ const COLOR_BYTES: u64 = 16;
 const DEPTH_BYTES: u64 = 4;
 
 /// Bytes of a row of a strip between dispatches: `Progress` of `cast_strips.wgsl`.
-const PROGRESS_BYTES: u64 = 128;
+const PROGRESS_BYTES: u64 = 144;
 
 /// Loop iterations of an invocation after which a GPU's dispatch ends, so that none runs for seconds.
 const GPU_ITERATIONS: u32 = 1 << 18;
@@ -227,10 +227,10 @@ fn iteration_limit(frame: &PairFrame<'_>) -> Result<u32, PairError> {
         return Ok(GPU_ITERATIONS);
     }
     let samples = frame.parameters().most_samples_per_ray();
-    let besides = STRETCH * (MOST_ITERATIONS_PER_SAMPLE + frame.prepared.iterations_of_shading)
-        + LOCKSTEP_RAYS * samples
-        + 5 * STRIP_COLUMNS
-        + 3 * frame.slabs.layers();
+    let of_stretch = STRETCH * (MOST_ITERATIONS_PER_SAMPLE + frame.prepared.iterations_of_shading);
+    let reach = STRIP_COLUMNS.saturating_add(frame.slabs.layers());
+    let of_rays_in_turn = LOCKSTEP_RAYS.saturating_mul(samples.saturating_add(reach));
+    let besides = of_rays_in_turn.saturating_add(of_stretch).saturating_add(reach.saturating_mul(2));
     let limit = ITERATION_LIMIT.saturating_sub(besides);
     if limit == 0 { Err(PairError::LongRays { samples }) } else { Ok(limit) }
 }

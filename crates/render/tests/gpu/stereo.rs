@@ -9,8 +9,9 @@ use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{Light, Mode, Settings, Shading};
 use wheatstone_core::skip::{BlockSize, Structure};
 use wheatstone_core::stereo::{Epipolar, StereoError};
+use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::{Rig, View};
-use wheatstone_core::volume::{Volume, VoxelType};
+use wheatstone_core::volume::{Volume, VoxelType, Window};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
 use wheatstone_render::{
     Form, Gpu, GpuVolume, Leap, PairError, PairMethod, Prepared, Quality, Renderer, Sources, Target,
@@ -215,5 +216,51 @@ fn only_strips_are_repaired() {
         let method = PairMethod { form: Form::Tiles, quality: Quality::Repaired };
         let refused = renderer.render_pair(gpu, &prepared, &epipolar, method, [&targets[0], &targets[1]]);
         assert!(matches!(refused, Err(PairError::Unrepaired)), "{refused:?}");
+    });
+}
+
+/// An opaque chequered block that fills its volume: rays leave through its sides.
+fn chequered_block() -> Volume {
+    let dims = [32, 32, 32];
+    let value =
+        |x: usize, y: usize, z: usize| if (x / 4 + y / 4 + z / 4).is_multiple_of(2) { 60 } else { 110 };
+    let voxels =
+        (0..32).flat_map(|z| (0..32).flat_map(move |y| (0..32).map(move |x| value(x, y, z)))).collect();
+    Volume::new(
+        wheatstone_core::volume::Grid::centred(dims, [1.0; 3]).unwrap(),
+        wheatstone_core::volume::Voxels::U8(voxels),
+    )
+    .unwrap()
+}
+
+#[test]
+fn repair_finds_faces_and_silhouettes_that_the_box_cuts() {
+    let volume = chequered_block();
+    on_device(|gpu, renderer| {
+        let uploaded = GpuVolume::upload(gpu, &volume, &mut |_, _| {}).unwrap();
+        let mut settings = Settings::new(volume.full_window(), transfer(0.9));
+        settings.transfer = TransferFunction::ramp(0.0, 0.5).unwrap();
+        settings.window = Window::new(0.0, 255.0).unwrap();
+        settings.early_termination = Some(0.99);
+        let parameters = CastParameters::new(&settings, &placement(&volume));
+        let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap();
+        let mut failures = Vec::new();
+        for (x, eye_distance_m) in
+            [(0.4, 0.4), (-0.4, 0.4), (0.4, -0.4), (-0.4, -0.4), (0.6, 0.065), (-0.6, 0.065)]
+        {
+            let views = pair(&middle([163, 121], DVec3::new(x, 0.1, 1.7)), eye_distance_m, f64::INFINITY);
+            let own = renderer.render_to_host(gpu, &prepared, &views).unwrap();
+            let epipolar = Epipolar::new(&views[0], &views[1]).unwrap();
+            let targets = views.map(|view| Target::new(gpu, view.size).unwrap());
+            let method = PairMethod { quality: Quality::Repaired, ..PairMethod::default() };
+            renderer.render_pair(gpu, &prepared, &epipolar, method, [&targets[0], &targets[1]]).unwrap();
+            let derived = targets[1].read(gpu).unwrap();
+            let pixels = derived.image.color.iter().zip(&own[1].image.color);
+            let far = pixels.filter(|(a, b)| (a[3] - b[3]).abs() > 0.5).count();
+            if far > 0 {
+                failures.push(format!("{x} {eye_distance_m}: {far} pixels"));
+            }
+        }
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
     });
 }
