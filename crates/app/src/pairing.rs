@@ -6,7 +6,8 @@ use crate::failure::Failure;
 use crate::pair_cost;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
-use wheatstone_core::scene::Mode;
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::view::View;
 use wheatstone_render::{Form, LayerFormat, PairMethod, Quality};
 
 /// Flags of stereo pairs.
@@ -222,11 +223,16 @@ impl PairRequest {
     }
 
     /// How a caster is to make the pair; nothing for two casts.
-    pub(crate) fn pairing(&self, engine: &Engine<'_>, mode: Mode) -> Option<Pairing> {
+    pub(crate) fn pairing(
+        &self,
+        engine: &Engine<'_>,
+        parameters: &CastParameters,
+        views: &[View],
+    ) -> Option<Pairing> {
         let form = match (self.method, engine) {
             (MethodName::TwoPass, _) | (MethodName::Auto, Engine::Cpu(_)) => None,
             (MethodName::SinglePass(form), _) => Some(form),
-            (MethodName::Auto, Engine::Gpu(_)) => pair_cost::cheapest(mode),
+            (MethodName::Auto, Engine::Gpu(_)) => pair_cost::cheapest(parameters, views),
         };
         form.map(|form| Pairing { form, quality: self.quality, reference: self.reference })
     }

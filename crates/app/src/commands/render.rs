@@ -183,6 +183,7 @@ impl RenderArgs {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let bar = Bar::new("frames", u64::from(frames));
         let shot = engine.prepare(parameters, skipping)?;
+        let views = self.camera.views(0.0)?;
         let mut made = Made {
             frames_ms: Vec::new(),
             samples: 0,
@@ -190,7 +191,7 @@ impl RenderArgs {
             white: self.white_of_all(engine, shot)?,
             leaping: engine.leaping(shot).clone(),
             gradient_map: engine.gradient_map_size(shot),
-            pairing: request.and_then(|request| request.pairing(engine, parameters.mode)),
+            pairing: request.and_then(|request| request.pairing(engine, parameters, &views)),
             pair_bytes: None,
             picture_size: [0; 2],
             outputs: Vec::new(),
