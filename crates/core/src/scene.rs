@@ -68,7 +68,7 @@ impl GradientMethod {
 /// Where light comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Light {
-    /// Phong from the eye; shadows from [`Light::DEFAULT_DIRECTION`].
+    /// Phong from the [viewpoint](crate::view::View::viewpoint); shadows from [`Light::DEFAULT_DIRECTION`].
     #[default]
     Headlight,
     /// Parallel light; the vector points towards the light, in world space.

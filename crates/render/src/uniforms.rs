@@ -67,6 +67,7 @@ pub(crate) struct ViewUniform {
     pub(crate) sample_limit: u32,
     pub(crate) band_stride: u32,
     pub(crate) first_column: u32,
+    pub(crate) viewpoint: [f32; 4],
     pub(crate) pair: PairUniform,
     pub(crate) padding: [u32; 3],
 }
@@ -181,6 +182,7 @@ impl ViewUniform {
             sample_limit: u32::MAX,
             band_stride: 1,
             first_column: 0,
+            viewpoint: rays.viewpoint.as_vec4().to_array(),
             pair: PairUniform::zeroed(),
             padding: [0; 3],
         }
@@ -267,6 +269,7 @@ mod tests {
                 sample_limit,
                 band_stride,
                 first_column,
+                viewpoint,
                 pair,
             ]
         );

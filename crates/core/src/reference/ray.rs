@@ -29,8 +29,10 @@ pub(super) struct PixelRay {
     first_depth_m: f64,
     /// Depth of a step, metres.
     step_depth_m: f64,
-    /// Unit vector back to the eye, metric space.
-    to_eye: DVec3,
+    /// From sample 0 to the viewpoint, metric space; a vector that points there if it is infinitely far away.
+    to_viewpoint: DVec3,
+    /// Change of that from one sample to the next.
+    to_viewpoint_step: DVec3,
 }
 
 impl PixelRay {
@@ -42,19 +44,22 @@ impl PixelRay {
         if near >= far {
             return Self::default();
         }
-        let metric_direction = parameters.metric_from_texture.as_dmat3() * direction;
+        let metric_from_texture = parameters.metric_from_texture.as_dmat3();
+        let metric_direction = metric_from_texture * direction;
         let sample_count = samples_between(near, far, metric_direction, parameters);
         let step_depth_m = if sample_count > 0 { (far - near) / f64::from(sample_count) } else { 0.0 };
         let first_depth_m = near + 0.5 * step_depth_m;
-        let metres_to_voxel_lengths = metric_direction.length();
+        let (viewpoint, w) = (rays.viewpoint.truncate(), rays.viewpoint.w);
         Self {
             first: origin + direction * first_depth_m,
             step: direction * step_depth_m,
-            step_length: step_depth_m * metres_to_voxel_lengths,
+            step_length: step_depth_m * metric_direction.length(),
             sample_count,
             first_depth_m,
             step_depth_m,
-            to_eye: -metric_direction / metres_to_voxel_lengths.max(PARALLEL),
+            to_viewpoint: metric_from_texture * (viewpoint - w * origin)
+                - metric_direction * (w * first_depth_m),
+            to_viewpoint_step: metric_direction * (-w * step_depth_m),
         }
     }
 
@@ -80,8 +85,10 @@ pub(super) struct Ray<L> {
     first_depth_m: L,
     /// Depth of a step, metres.
     pub(super) step_depth_m: L,
-    /// Unit vector back to the eye, metric space.
-    pub(super) to_eye: Vec3<L>,
+    /// From sample 0 to the viewpoint, metric space; a vector that points there if it is infinitely far away.
+    to_viewpoint: Vec3<L>,
+    /// Change of that from one sample to the next.
+    to_viewpoint_step: Vec3<L>,
 }
 
 impl<L: Lanes> Ray<L> {
@@ -100,7 +107,8 @@ impl<L: Lanes> Ray<L> {
             sample_count: number(|ray| f64::from(ray.sample_count)),
             first_depth_m: number(|ray| ray.first_depth_m),
             step_depth_m: number(|ray| ray.step_depth_m),
-            to_eye: vector(|ray| ray.to_eye, DVec3::ONE),
+            to_viewpoint: vector(|ray| ray.to_viewpoint, DVec3::ONE),
+            to_viewpoint_step: vector(|ray| ray.to_viewpoint_step, DVec3::ONE),
         }
     }
 
@@ -108,6 +116,15 @@ impl<L: Lanes> Ray<L> {
     #[inline(always)]
     pub(super) fn at(&self, index: L) -> Vec3<L> {
         self.step.mul_add(index, self.first)
+    }
+
+    /// Unit vector to the viewpoint from where the ray passes a position, metric space.
+    #[inline(always)]
+    pub(super) fn viewpoint_direction(&self, token: L::Token, position: Vec3<L>) -> Vec3<L> {
+        let least = L::splat(token, f32::MIN_POSITIVE);
+        let index = (position - self.first).dot(self.step) / self.step.length_squared().max(least);
+        let to_viewpoint = self.to_viewpoint_step.mul_add(index, self.to_viewpoint);
+        to_viewpoint * (L::splat(token, 1.0) / to_viewpoint.length_squared().max(least).sqrt())
     }
 
     /// Its way through the blocks of a map.

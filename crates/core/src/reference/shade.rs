@@ -30,7 +30,7 @@ pub(super) fn shade<C: Classify, L: Lanes>(
                 Some(gradient) => gradient,
                 None => gradient_at(context, token, position),
             };
-            phong(context, token, ray, rgb, gradient)
+            phong(context, token, ray.viewpoint_direction(token, position), rgb, gradient)
         }
         Shading::Shadow => rgb * shadow::<C, L>(context, token, position),
         Shading::Ambient => rgb * ambient::<C, L>(context, token, position),
@@ -46,7 +46,7 @@ pub(super) fn shade<C: Classify, L: Lanes>(
 fn phong<L: Lanes>(
     context: &Context<'_>,
     token: L::Token,
-    ray: &Ray<L>,
+    to_viewpoint: Vec3<L>,
     rgb: Vec3<L>,
     gradient: Vec3<L>,
 ) -> Vec3<L> {
@@ -58,10 +58,10 @@ fn phong<L: Lanes>(
     let normal = gradient * (one / squared.max(flat_squared).sqrt());
     let to_light = context.parameters.to_light;
     let (to_light, half_way) = if to_light == Vec3A::ZERO {
-        (ray.to_eye, ray.to_eye)
+        (to_viewpoint, to_viewpoint)
     } else {
         let to_light = Vec3::splat(token, to_light);
-        let between = to_light + ray.to_eye;
+        let between = to_light + to_viewpoint;
         (to_light, between * (one / between.length_squared().max(L::splat(token, 1e-12)).sqrt()))
     };
     let facing = L::select(is_flat, one, normal.dot(to_light).abs());

@@ -16,7 +16,8 @@ const BASELINE_TOLERANCE: f64 = 1e-3;
 /// headsets.
 ///
 /// A point at depth z that the reference eye sees in column `x_r` is in column `x_d = x_r + c − k/z` of the derived picture
-/// (SP Eq. 2 and 3 in pixels; VR Source 1 without its matrices), in the same row.
+/// (SP Eq. 2 and 3 in pixels; VR Source 1 without its matrices), in the same row. It is shaded as for
+/// the reference eye, which is as for the derived one if both are of one [`Rig`](crate::view::Rig).
 ///
 /// `k`, `c`, slabs and shifts count **sweep** columns: from the left if the derived eye is to the right, else mirrored,
 /// from the right. There k is not negative and nearer means further left, so that algorithms need one direction only:

@@ -6,6 +6,7 @@ mod pixel_rect;
 mod placement;
 mod ray_field;
 mod rig;
+mod viewpoint;
 
 pub use frustum::{Frustum, FrustumError, OrthographicBox, Projection};
 pub use orbit::Orbit;
@@ -14,6 +15,7 @@ pub(crate) use pixel_rect::whole_pixels;
 pub use placement::{AnatomicalDirection, world_from_patient};
 pub use ray_field::RayField;
 pub use rig::Rig;
+pub use viewpoint::Viewpoint;
 
 use glam::DAffine3;
 
@@ -26,4 +28,7 @@ pub struct View {
     pub projection: Projection,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Where the picture is shaded from; `None` is its own eye. The views of a [`Rig`] share one viewpoint: surfaces and
+    /// highlights that differ between the eyes would rival each other.
+    pub shaded_from: Option<Viewpoint>,
 }

@@ -28,6 +28,6 @@ impl Orbit {
         let world_from_view = DAffine3::from_mat3(
             DMat3::from_rotation_y(self.azimuth_rad) * DMat3::from_rotation_x(-self.elevation_rad),
         ) * DAffine3::from_translation(DVec3::Z * self.distance_m);
-        View { view_from_world: world_from_view.inverse(), projection, size }
+        View { view_from_world: world_from_view.inverse(), projection, size, shaded_from: None }
     }
 }

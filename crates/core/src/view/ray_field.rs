@@ -1,7 +1,7 @@
 //! The rays of a view: affine in the pixel coordinates.
 
 use super::{Projection, View};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, DVec4};
 
 /// Rays of all pixels, in the space that `target_from_world` led to.
 ///
@@ -24,6 +24,8 @@ pub struct RayField {
     pub direction_dy: DVec3,
     /// Nearest and furthest depth, metres.
     pub depth_range_m: (f64, f64),
+    /// [`View::viewpoint`] in homogeneous coordinates: a point has w = 1, a direction w = 0.
+    pub viewpoint: DVec4,
 }
 
 impl RayField {
@@ -34,6 +36,7 @@ impl RayField {
         let point = |p: DVec3| target_from_view.transform_point3(p);
         let (width, height) = (f64::from(view.size[0]), f64::from(view.size[1]));
         let depth_range_m = view.projection.depth_range_m();
+        let viewpoint = view.viewpoint().homogeneous(target_from_world);
         match view.projection {
             Projection::Perspective(f) => Self {
                 origin: point(DVec3::ZERO),
@@ -43,6 +46,7 @@ impl RayField {
                 direction_dx: vector(DVec3::X * ((f.right - f.left) / width)),
                 direction_dy: vector(DVec3::Y * ((f.down - f.up) / height)),
                 depth_range_m,
+                viewpoint,
             },
             Projection::Orthographic(o) => Self {
                 origin: point(DVec3::new(o.left_m, o.up_m, 0.0)),
@@ -52,6 +56,7 @@ impl RayField {
                 direction_dx: DVec3::ZERO,
                 direction_dy: DVec3::ZERO,
                 depth_range_m,
+                viewpoint,
             },
         }
     }

@@ -19,7 +19,7 @@ pub enum Rig {
 }
 
 impl Rig {
-    /// The views of the rig about a middle view, left eye first.
+    /// The views of the rig about a middle view, left eye first; all of them are shaded from the middle view.
     pub fn views(&self, middle: &View) -> Vec<View> {
         match *self {
             Self::Mono => vec![*middle],
@@ -38,7 +38,7 @@ fn moved(view: &View, right_m: f64, convergence_m: f64) -> View {
         parallel @ Projection::Orthographic(_) => parallel,
     };
     let view_from_world = DAffine3::from_translation(DVec3::NEG_X * right_m) * view.view_from_world;
-    View { view_from_world, projection, ..*view }
+    View { view_from_world, projection, shaded_from: Some(view.viewpoint()), ..*view }
 }
 
 #[cfg(test)]

@@ -5,8 +5,9 @@ use crate::scene::*;
 use crate::tolerance;
 use glam::DVec3;
 use wheatstone_core::cast::PHONG;
-use wheatstone_core::scene::{Clip, GradientMethod, Light, Settings, Shading};
+use wheatstone_core::scene::{Clip, GradientMethod, Light, Mode, Settings, Shading};
 use wheatstone_core::transfer::OpacityPoint;
+use wheatstone_core::view::{Rig, View, Viewpoint};
 use wheatstone_core::volume::Volume;
 
 const METHODS: [GradientMethod; 2] = [GradientMethod::CentralDifferences, GradientMethod::Tetrahedron];
@@ -129,4 +130,81 @@ fn where_the_value_does_not_change_light_falls_head_on() {
     };
     let [r, _, _, a] = color_at(&cast(&volume, &settings, &view).image, 4, 4);
     assert!((f64::from(r / a) - 0.9).abs() < tolerance::LIT_COLOR, "{}", r / a);
+}
+
+/// Largest difference of a lit plane through the origin from what the formula says for a viewpoint, and from what it says
+/// for the view's own eye. Volume and settings are a ramp's, of which the plane is an isosurface.
+fn off_from(
+    volume: &Volume,
+    settings: &Settings,
+    normal: DVec3,
+    view: &View,
+    viewpoint: Viewpoint,
+) -> [f64; 2] {
+    let image = cast(volume, settings, view).image;
+    let to = |viewpoint, at: DVec3| match viewpoint {
+        Viewpoint::At(point) => (point - at).normalize_or_zero(),
+        Viewpoint::Towards(direction) => direction.normalize_or_zero(),
+    };
+    let own = View { shaded_from: None, ..*view }.viewpoint();
+    let mut most_off = [0.0_f64; 2];
+    let mut hits = 0;
+    for (x, y) in pixels(view).filter(|&(x, y)| color_at(&image, x, y)[3] > 0.0) {
+        let (origin, direction) = world_ray(view, x, y);
+        let at = origin - direction * (normal.dot(origin) / normal.dot(direction));
+        for (most_off, viewpoint) in most_off.iter_mut().zip([viewpoint, own]) {
+            let to_viewer = to(viewpoint, at);
+            let to_light = match settings.light {
+                Light::Headlight => to_viewer,
+                Light::Directional(d) => d.as_dvec3().normalize_or_zero(),
+            };
+            let expected = phong(normal, to_light, to_viewer);
+            *most_off = most_off.max((f64::from(color_at(&image, x, y)[0]) - expected).abs());
+        }
+        hits += 1;
+    }
+    assert!(hits > 40, "{hits}");
+    most_off
+}
+
+#[test]
+fn eyes_of_a_rig_are_shaded_from_its_middle() {
+    let size = [28, 24];
+    let normal = DVec3::new(0.36, -0.48, 0.8);
+    // Voxels so small that it does not matter that isosurfaces are lit half a voxel length above them.
+    let volume = ramp([0.5, 0.25, 0.125], normal * (4.0 * ROW / 0.5));
+    let eye = DVec3::new(0.05, 0.02, 0.3);
+    let rig = Rig::Stereo { eye_distance_m: 0.05, convergence_m: 0.3 };
+    let near = look(eye, DVec3::ZERO, DVec3::Y, perspective(0.1, size), size);
+    let parallel = look(eye, DVec3::ZERO, DVec3::Y, orthographic(0.03, size), size);
+    let from_elsewhere = |viewpoint| (View { shaded_from: Some(viewpoint), ..near }, viewpoint);
+    let mut views = vec![
+        (near, Viewpoint::At(eye)),
+        (parallel, Viewpoint::Towards(eye)),
+        from_elsewhere(Viewpoint::At(DVec3::new(-0.2, 0.2, 0.4))),
+        from_elsewhere(Viewpoint::Towards(DVec3::new(-1.0, 2.0, 3.0))),
+    ];
+    for (middle, viewpoint) in views.clone() {
+        views.extend(rig.views(&middle).into_iter().map(|view| (view, viewpoint)));
+    }
+    // The plane mirrors it to the eyes.
+    let light = Light::Directional(DVec3::new(0.4, -0.8, 0.4).as_vec3());
+    for light in [Light::Headlight, light] {
+        let settings = Settings {
+            light,
+            clip: inner(),
+            mode: Mode::Isosurface { isovalue: 0.5 },
+            shading: Shading::Phong,
+            surface_rgb: Some([1.0; 3]),
+            ..exact_settings(unit_window(), constant_transfer([1.0; 3], 0.1))
+        };
+        for (view, viewpoint) in &views {
+            let [off, off_from_own_eye] = off_from(&volume, &settings, normal, view, *viewpoint);
+            let case = format!("{light:?} {view:?}");
+            assert!(off <= tolerance::LIT_COLOR, "{case}: {off}");
+            // Of a rig of parallel views, all eyes are infinitely far away in one direction.
+            let is_own = *view == near || view.projection == parallel.projection;
+            assert!(is_own || off_from_own_eye > 3.0 * tolerance::LIT_COLOR, "{case}: {off_from_own_eye}");
+        }
+    }
 }

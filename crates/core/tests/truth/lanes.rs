@@ -8,7 +8,7 @@ use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Light, Mode, Placement, Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
-use wheatstone_core::view::View;
+use wheatstone_core::view::{Rig, View};
 use wheatstone_core::volume::{StorageKind, Volume};
 
 /// Soft balls in a faint haze; sides that are no multiple of anything.
@@ -46,6 +46,11 @@ fn inside() -> View {
     look(DVec3::new(0.02, 0.03, 0.01), DVec3::X, DVec3::Y, perspective(1.5, size), size)
 }
 
+/// The left eye of a pair, which is shaded from the middle.
+fn left_eye() -> View {
+    Rig::Stereo { eye_distance_m: 0.2, convergence_m: 0.7 }.views(&outside()).remove(0)
+}
+
 /// Along an axis.
 fn straight() -> View {
     let size = [37, 30];
@@ -79,7 +84,9 @@ fn assert_agree_with(
     depth: Option<GradientDepth>,
     what: &str,
 ) {
-    for (from, view) in [("outside", outside()), ("inside", inside()), ("straight", straight())] {
+    let views =
+        [("outside", outside()), ("the left", left_eye()), ("inside", inside()), ("straight", straight())];
+    for (from, view) in views {
         let [fast, exact] = both(volume, kind, settings, depth, view);
         let exact_hits = exact.image.depth_m.iter().filter(|d| d.is_finite()).count();
         assert!(exact_hits > 100, "{what} from {from}: only {exact_hits} hits");

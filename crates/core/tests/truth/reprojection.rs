@@ -132,6 +132,23 @@ fn the_derived_eye_sees_nearly_what_it_casts_itself_however_it_is_lit() {
 }
 
 #[test]
+fn eyes_that_are_shaded_from_the_middle_agree_on_what_is_lit() {
+    let scene = Scene::phantom(Phantom::Sphere, &tissue_settings(Shading::Phong));
+    let rig = Rig::Stereo { eye_distance_m: EYE_DISTANCE_M, convergence_m: f64::INFINITY };
+    let views = eyes(rig, 0.9, SIZE);
+    let [from_middle, from_own_eyes] =
+        [views, views.map(|view| View { shaded_from: None, ..view })].map(|[left, right]| {
+            let epipolar = Epipolar::new(&left, &right).unwrap();
+            let [_, own] = scene.own(&epipolar);
+            difference(&scene.pair(&epipolar, splat(Splat::Step))[1], &own).dssim()
+        });
+    assert!(
+        from_middle < tolerance::DERIVED_DSSIM && from_middle < 0.2 * from_own_eyes,
+        "{from_middle} {from_own_eyes}"
+    );
+}
+
+#[test]
 fn columns_that_share_samples_see_fine_structures() {
     let epipolar = to_right(EYE_DISTANCE_M, f64::INFINITY, [253, 191]);
     for phantom in [Phantom::SheppLogan, Phantom::SolidBox, Phantom::Beetle, Phantom::Present] {

@@ -90,7 +90,7 @@ pub(crate) fn look(eye: DVec3, at: DVec3, up: DVec3, projection: Projection, siz
     let right = up.cross(back).normalize_or_zero();
     let world_from_view =
         DAffine3::from_mat3_translation(DMat3::from_cols(right, back.cross(right), back), eye);
-    View { view_from_world: world_from_view.inverse(), projection, size }
+    View { view_from_world: world_from_view.inverse(), projection, size, shaded_from: None }
 }
 
 /// Origin and direction per metre of depth of a pixel's ray, world space.

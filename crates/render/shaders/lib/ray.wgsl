@@ -4,6 +4,9 @@ import package::lib::view::{view};
 // Direction components nearer to zero than this count as this far from it, so that no division overflows.
 const PARALLEL: f32 = 1e-12;
 
+// Least squared length that is divided by.
+const LEAST_SQUARED: f32 = 1e-30;
+
 struct Ray {
     // Texture position of sample 0.
     first: vec3f,
@@ -17,8 +20,10 @@ struct Ray {
     first_depth_m: f32,
     // Depth of a step, metres.
     step_depth_m: f32,
-    // Unit vector back to the eye, metric space.
-    to_eye: vec3f,
+    // From sample 0 to the viewpoint, metric space; a vector that points there if it is infinitely far away.
+    to_viewpoint: vec3f,
+    // Change of that from one sample to the next.
+    to_viewpoint_step: vec3f,
 }
 
 // Depths at which a ray enters and leaves the visible box and half-space.
@@ -67,13 +72,23 @@ fn ray_through(at: vec2f) -> Ray {
     ray.first = origin + direction * ray.first_depth_m;
     ray.step = direction * ray.step_depth_m;
     ray.step_length = ray.step_depth_m * metres_to_voxel_lengths;
-    ray.to_eye = -metric_direction / max(metres_to_voxel_lengths, PARALLEL);
+    let w = view.viewpoint.w;
+    ray.to_viewpoint = parameters.metric_from_texture * (view.viewpoint.xyz - w * origin)
+        - metric_direction * (w * ray.first_depth_m);
+    ray.to_viewpoint_step = metric_direction * (-w * ray.step_depth_m);
     return ray;
 }
 
 // Texture position of a sample; fractional indices lie between samples.
 fn ray_at(ray: Ray, index: f32) -> vec3f {
     return ray.first + ray.step * index;
+}
+
+// Unit vector to the viewpoint from where a ray passes a texture position, metric space.
+fn viewpoint_direction(ray: Ray, position: vec3f) -> vec3f {
+    let index = dot(position - ray.first, ray.step) / max(dot(ray.step, ray.step), LEAST_SQUARED);
+    let towards = ray.to_viewpoint + ray.to_viewpoint_step * index;
+    return towards * inverseSqrt(max(dot(towards, towards), LEAST_SQUARED));
 }
 
 // Depth of a sample, metres.

@@ -2,7 +2,7 @@ import package::lib::cast_parameters::{parameters};
 import package::lib::classified::{Classified};
 import package::lib::classify::{CLASSIFIER_HAS_GRADIENT};
 import package::lib::gradient::{gradient_at};
-import package::lib::ray::{Ray};
+import package::lib::ray::{Ray, viewpoint_direction};
 
 const SHADING_IS_DEAR = true;
 
@@ -26,8 +26,9 @@ fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
     }
     let normal = gradient * inverseSqrt(squared);
     let has_light = any(parameters.to_light != vec3f(0.0));
-    let to_light = select(ray.to_eye, parameters.to_light, has_light);
-    let between = to_light + ray.to_eye;
+    let to_viewpoint = viewpoint_direction(ray, position);
+    let to_light = select(to_viewpoint, parameters.to_light, has_light);
+    let between = to_light + to_viewpoint;
     let half_way = between * inverseSqrt(max(dot(between, between), 1e-12));
     let highlight = SPECULAR * pow(abs(dot(normal, half_way)), SPECULAR_EXPONENT);
     return classified.entry.rgb * (AMBIENT + DIFFUSE * abs(dot(normal, to_light))) + highlight;

@@ -12,7 +12,7 @@ use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Light, Mode, Settings, Shading};
 use wheatstone_core::transfer::TransferFunction;
-use wheatstone_core::view::View;
+use wheatstone_core::view::{Rig, View};
 use wheatstone_core::volume::{StorageKind, Volume, VoxelType, Window};
 use wheatstone_render::{Gpu, GpuGradientMap, GpuVolume, Leap, Renderer, Sources, TexelFormat};
 
@@ -310,6 +310,35 @@ fn projections_eyes_and_picture_sizes() {
         }
     }
     check("projections, eyes and picture sizes", &volume, cases);
+}
+
+#[test]
+fn eyes_of_rigs() {
+    let volume = blobs_u16();
+    let size = [61, 47];
+    let look_from = |eye, projection| look(eye, DVec3::new(-0.1, 0.0, 0.05), projection, size);
+    let middles = [
+        ("near", look_from(DVec3::new(0.3, 0.4, 0.7), perspective(0.9, size))),
+        ("inside", look_from(DVec3::new(0.05, 0.1, 0.1), perspective(1.5, size))),
+        ("parallel", look_from(DVec3::new(0.3, 0.4, 0.7), orthographic(1.3, size))),
+    ];
+    let phong = Settings { shading: Shading::Phong, ..plain(&volume) };
+    let light = Light::Directional(Vec3::new(0.9, -0.3, 0.2));
+    let lit = [
+        ("headlight", phong.clone()),
+        ("light", Settings { light, ..phong.clone() }),
+        ("iso", Settings { mode: Mode::Isosurface { isovalue: 0.4 }, ..phong }),
+    ];
+    let rig = Rig::Stereo { eye_distance_m: 0.3, convergence_m: 0.8 };
+    let mut cases = Vec::new();
+    for (from, middle) in middles {
+        for (eye, view) in ["left", "right"].into_iter().zip(rig.views(&middle)) {
+            for (name, settings) in &lit {
+                cases.push(Case { view, ..case(format!("{name} {from} {eye}"), settings.clone()) });
+            }
+        }
+    }
+    check("eyes of rigs", &volume, cases);
 }
 
 #[test]

@@ -104,7 +104,7 @@ pub(crate) fn look(eye: DVec3, at: DVec3, projection: Projection, size: [u32; 2]
     let right = DVec3::Y.cross(back).normalize_or_zero();
     let world_from_view =
         DAffine3::from_mat3_translation(DMat3::from_cols(right, back.cross(right), back), eye);
-    View { view_from_world: world_from_view.inverse(), projection, size }
+    View { view_from_world: world_from_view.inverse(), projection, size, shaded_from: None }
 }
 
 /// A picture of an odd size that shows the whole volume at an angle.
