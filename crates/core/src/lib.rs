@@ -4,6 +4,7 @@
 //! No GPU, no files. Spaces and units are named in every identifier; `ARCHITECTURE.md` lists them.
 #![forbid(unsafe_code)]
 
+pub mod budget;
 pub mod cast;
 pub mod gradient_map;
 pub mod image;

@@ -1,0 +1,91 @@
+//! How much more than expected to be prepared for.
+
+use std::collections::VecDeque;
+
+/// Batches remembered: a few seconds.
+const REMEMBERED: usize = 256;
+
+/// Batches after which the doubts of the beginning are forgotten.
+const DOUBTFUL: usize = 64;
+
+/// Deviations reserved before anything is known.
+const FIRST_DEVIATIONS: f64 = 4.0;
+
+/// Fewest deviations that are reserved: what has never been off may be, once.
+const FEWEST_DEVIATIONS: f64 = 1.0;
+
+/// Most deviations that are reserved.
+const MOST_DEVIATIONS: f64 = 8.0;
+
+/// Learns how far batches are off what was expected of them, in deviations.
+///
+/// In place of the bias b of VR Alg. 5: errors of single cells cancel in a batch, so that a factor per cell that covers
+/// their errors reserves too much, and a fixed one reserves too little where things move. The reserve is what all but the
+/// worst of the remembered batches would have kept to, so the share that exceeds it is about 2 in 257, whatever the
+/// distribution of errors.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Margin {
+    /// Oldest first.
+    recent_deviations: VecDeque<f64>,
+}
+
+impl Default for Margin {
+    fn default() -> Self {
+        let mut recent_deviations = VecDeque::from([0.0; REMEMBERED]);
+        recent_deviations.range_mut(DOUBTFUL - 2..DOUBTFUL).for_each(|d| *d = FIRST_DEVIATIONS);
+        Self { recent_deviations }
+    }
+}
+
+impl Margin {
+    /// Deviations by which to undercut a budget: the second most of late.
+    pub(super) fn deviations(&self) -> f64 {
+        let (_, second) =
+            self.recent_deviations.iter().fold((0.0_f64, 0.0_f64), |(most, second), &deviations| {
+                (most.max(deviations), second.max(deviations.min(most)))
+            });
+        second.max(FEWEST_DEVIATIONS)
+    }
+
+    /// Learns from a batch.
+    pub(super) fn learn(&mut self, expected_s: f64, variance_s2: f64, measured_s: f64) {
+        let deviations = (measured_s - expected_s) / variance_s2.sqrt();
+        if deviations.is_finite() {
+            self.recent_deviations.pop_front();
+            self.recent_deviations.push_back(deviations.min(MOST_DEVIATIONS));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_margin_shrinks_to_the_errors_that_there_are_and_grows_with_them() {
+        let mut margin = Margin::default();
+        let mut learn = |deviations: &[f64]| {
+            deviations.iter().for_each(|d| margin.learn(1.0, 0.01, 1.0 + 0.1 * d));
+            (10.0 * margin.deviations()).round() / 10.0
+        };
+        assert_eq!(learn(&[]), FIRST_DEVIATIONS);
+        assert_eq!(learn(&[1.0; DOUBTFUL - 2]), FIRST_DEVIATIONS);
+        assert_eq!(learn(&[-1.0, 1.0]), 1.0);
+        assert_eq!(learn(&[2.0]), 1.0);
+        assert_eq!(learn(&[1e9]), 2.0);
+        assert_eq!(learn(&[1e9]), MOST_DEVIATIONS);
+        assert_eq!(learn(&[1.5; REMEMBERED]), 1.5);
+        assert_eq!(learn(&[-3.0; REMEMBERED]), FEWEST_DEVIATIONS);
+    }
+
+    #[test]
+    fn what_is_no_error_teaches_nothing() {
+        let mut margin = Margin::default();
+        for [expected_s, variance_s2, measured_s] in
+            [[0.0, 0.0, 1.0], [f64::INFINITY, 1.0, 1.0], [1.0, 1.0, f64::NAN], [0.0, -1.0, 0.0]]
+        {
+            margin.learn(expected_s, variance_s2, measured_s);
+        }
+        assert_eq!(margin, Margin::default());
+    }
+}

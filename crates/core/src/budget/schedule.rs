@@ -1,0 +1,173 @@
+//! Which cells to cast before the next refresh.
+
+use super::margin::Margin;
+use super::{Batch, BudgetError, CellCosts, Expectation, Predictor, ViewRequest};
+
+/// Share of a refresh for cells of a view that superseded another, until the first of them are measured: another transfer
+/// function may make them dearer.
+const SHARE_IN_DOUBT: f64 = 0.5;
+
+/// Casts a view after the other, a batch of cells per refresh (VR Alg. 4), with a front picture that is complete and a back
+/// picture under way.
+///
+/// Before each refresh [`plan`](Self::plan) gives the cells for the time that is left when the warp's is taken away; what they
+/// took is told to [`record`](Self::record), at once or refreshes later. The last cells of a view swap front and back, and the
+/// rest of that refresh is left free, so that the next view begins with the newest pose. What is shown already is not cast again.
+///
+/// `C` is all that tells one picture from another. Which of three calls brings a new one says when it takes effect:
+/// [`aim`](Self::aim), [`supersede`](Self::supersede) or [`replace`](Self::replace). Whichever it is, the front picture stays until
+/// another one is complete.
+#[derive(Debug, Clone)]
+pub struct CastSchedule<C> {
+    predictor: Predictor,
+    margin: Margin,
+    costs: CellCosts,
+    wanted: ViewRequest<C>,
+    back: Option<UnderWay<C>>,
+    front: Option<ViewRequest<C>>,
+    views_begun: u64,
+    /// Whether work has been dropped since the last swap.
+    has_superseded: bool,
+}
+
+/// A view that is being cast.
+#[derive(Debug, Clone)]
+struct UnderWay<C> {
+    request: ViewRequest<C>,
+    order: Vec<usize>,
+    next: usize,
+}
+
+impl<C: Clone + PartialEq> CastSchedule<C> {
+    /// Begins with nothing shown and nothing known about costs.
+    pub fn new(first: ViewRequest<C>, predictor: Predictor) -> Self {
+        Self {
+            predictor,
+            margin: Margin::default(),
+            costs: CellCosts::new(*first.grid(), first.work_per_pixel()),
+            wanted: first,
+            back: None,
+            front: None,
+            views_begun: 0,
+            has_superseded: false,
+        }
+    }
+
+    /// The picture to cast next, when the one under way is complete: a new pose.
+    pub fn aim(&mut self, request: ViewRequest<C>) {
+        self.wanted = request;
+    }
+
+    /// The picture to cast now: another transfer function, or a coarser view because something begins to move. Drops what is
+    /// under way, unless that has itself superseded other work since the last swap; then it is as [`aim`](Self::aim).
+    /// So pictures are completed however often one is superseded.
+    pub fn supersede(&mut self, request: ViewRequest<C>) {
+        self.aim(request);
+        if !self.has_superseded && self.back.take().is_some() {
+            self.has_superseded = true;
+        }
+    }
+
+    /// The only picture that can still be cast: another volume. Drops what is under way and what is known about costs.
+    pub fn replace(&mut self, request: ViewRequest<C>) {
+        self.back = None;
+        self.margin = Margin::default();
+        self.costs = CellCosts::new(*request.grid(), request.work_per_pixel());
+        // Times of cells cast so far are another volume's.
+        self.views_begun += 2;
+        self.aim(request);
+    }
+
+    /// The complete picture: what is shown, warped to the newest pose.
+    pub fn front(&self) -> Option<&ViewRequest<C>> {
+        self.front.as_ref()
+    }
+
+    /// The picture under way; none before the first batch of a view and after the last.
+    pub fn back(&self) -> Option<&ViewRequest<C>> {
+        self.back.as_ref().map(|back| &back.request)
+    }
+
+    /// What is known about the costs of cells.
+    pub fn costs(&self) -> &CellCosts {
+        &self.costs
+    }
+
+    /// Cells for a refresh with so many seconds for casting, at least one; none if the picture wanted is the one shown.
+    /// Time that is negative or no number counts as none.
+    pub fn plan(&mut self, available_s: f64) -> Option<Batch> {
+        if self.back.is_none() && self.front.as_ref() != Some(&self.wanted) {
+            self.begin();
+        }
+        self.fill(available_s, 1)
+    }
+
+    /// More cells of the view under way for the time left in the same refresh, where [`plan`](Self::plan)'s have been measured
+    /// already; none if none fit.
+    pub fn plan_more(&mut self, left_s: f64) -> Option<Batch> {
+        self.fill(left_s, 0)
+    }
+
+    /// Learns what the cells of a batch took, seconds. Times of views before the last are of no use any more.
+    ///
+    /// # Errors
+    /// Not one duration for each cell, or a negative or infinite one; then nothing is learnt.
+    pub fn record(&mut self, batch: &Batch, seconds: &[f64]) -> Result<(), BudgetError> {
+        if seconds.len() != batch.cells.len() {
+            return Err(BudgetError::Durations { durations: seconds.len(), cells: batch.cells.len() });
+        }
+        for &s in seconds {
+            BudgetError::unless_duration(s)?;
+        }
+        let timed = batch.cells.iter().zip(seconds);
+        match self.views_begun.checked_sub(batch.view) {
+            Some(1) => timed.for_each(|(&cell, &s)| self.costs.record(cell, s)),
+            Some(2) => timed.for_each(|(&cell, &s)| self.costs.record_late(cell, s)),
+            _ => return Ok(()),
+        }
+        self.margin.learn(batch.expected_s, batch.variance_s2, seconds.iter().sum());
+        Ok(())
+    }
+
+    fn begin(&mut self) {
+        let request = self.wanted.clone();
+        if self.views_begun > 0 {
+            self.costs = self.costs.next_view(*request.grid(), request.work_per_pixel());
+        } else {
+            self.costs = CellCosts::new(*request.grid(), request.work_per_pixel());
+        }
+        self.views_begun += 1;
+        self.back = Some(UnderWay { order: request.grid().order(), request, next: 0 });
+    }
+
+    fn fill(&mut self, available_s: f64, at_least: usize) -> Option<Batch> {
+        let is_doubtful = self.has_superseded && self.costs.mean_measured_s().is_none();
+        let available_s = if is_doubtful { SHARE_IN_DOUBT * available_s } else { available_s };
+        let deviations = self.margin.deviations();
+        let back = self.back.as_mut()?;
+        let first = back.next;
+        let (mut expected_s, mut variance_s2) = (0.0, 0.0);
+        while let Some(&cell) = back.order.get(back.next) {
+            let unknown = Expectation { seconds: f64::INFINITY, variance_s2: 0.0 };
+            let cell = self.predictor.predict(&self.costs, cell).unwrap_or(unknown);
+            let reserved_s = deviations * (variance_s2 + cell.variance_s2).sqrt();
+            let fits = expected_s + cell.seconds + reserved_s <= available_s;
+            if !fits && back.next >= first + at_least {
+                break;
+            }
+            expected_s += cell.seconds;
+            variance_s2 += cell.variance_s2;
+            back.next += 1;
+        }
+        if back.next == first {
+            return None;
+        }
+        let cells = back.order[first..back.next].to_vec();
+        let completes_view = back.next == back.order.len();
+        if completes_view {
+            self.front = self.back.take().map(|back| back.request);
+            self.has_superseded = false;
+        }
+        Some(Batch { view: self.views_begun - 1, cells, expected_s, variance_s2, completes_view })
+    }
+}
