@@ -16,6 +16,7 @@ mod readback;
 mod renderer;
 pub mod shader;
 pub mod skip;
+mod squares;
 mod stereo;
 mod target;
 mod tile_pass;

@@ -6,21 +6,20 @@ use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
+use crate::squares::Squares;
 use crate::stereo::{LayerFormat, LayerPass, PairTilePass, Quality, RepairList, StripPass};
 use crate::target::Target;
-use crate::tile_pass::{self, TilePass};
+use crate::tile_pass::{self, TileList, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
-use glam::DVec3;
 use half::f16;
 use std::collections::HashMap;
-use std::ops::Range;
 use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
-use wheatstone_core::view::{PixelRect, View};
+use wheatstone_core::view::View;
 
 /// Most bytes of ray states between dispatches.
 pub(crate) const MOST_STATE_BYTES: u64 = 64 << 20;
@@ -31,6 +30,12 @@ pub struct Renderer {
     groups: GroupLayouts,
     pub(crate) casts: VariantPipelines,
     tile_pass: TilePass,
+    /// That of the last picture.
+    tile_list: Option<TileList>,
+    /// Rays of the last picture that was cast in parts.
+    states: Option<wgpu::Buffer>,
+    /// What targets are emptied with.
+    zeros: wgpu::Buffer,
     strip_passes: HashMap<Quality, StripPass>,
     repairs: Option<RepairList>,
     pair_tile_pass: Option<PairTilePass>,
@@ -85,6 +90,7 @@ impl Renderer {
         let groups = GroupLayouts::new(&gpu.device);
         let casts = VariantPipelines::of_views(&gpu.device, &groups);
         let tile_pass = TilePass::new(&gpu.device, &groups)?;
+        let zeros = Target::zeros(gpu);
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("trilinear"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -110,6 +116,9 @@ impl Renderer {
             groups,
             casts,
             tile_pass,
+            tile_list: None,
+            states: None,
+            zeros,
             strip_passes: HashMap::new(),
             repairs: None,
             pair_tile_pass: None,
@@ -211,7 +220,7 @@ impl Renderer {
         gpu: &Gpu,
         prepared: &Prepared,
         views: &[View],
-        targets: &[Target],
+        targets: &mut [Target],
     ) -> Result<(), GpuError> {
         assert_eq!(views.len(), targets.len(), "one target per view");
         for (view, target) in views.iter().zip(targets) {
@@ -231,9 +240,9 @@ impl Renderer {
         prepared: &Prepared,
         views: &[View],
     ) -> Result<Vec<Cast>, GpuError> {
-        let targets: Vec<Target> =
+        let mut targets: Vec<Target> =
             views.iter().map(|v| Target::new(gpu, v.size)).collect::<Result<_, _>>()?;
-        self.render(gpu, prepared, views, &targets)?;
+        self.render(gpu, prepared, views, &mut targets)?;
         targets.iter().map(|target| target.read(gpu)).collect()
     }
 
@@ -248,6 +257,12 @@ impl Renderer {
         let list = kept.unwrap_or_else(|| RepairList::new(gpu, size));
         list.clear(&gpu.queue);
         self.repairs.insert(list).clone()
+    }
+
+    /// Room for rays that are cast in parts: that of the last picture if it is large enough.
+    pub(crate) fn states(&mut self, gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
+        let kept = self.states.take().filter(|states| states.size() >= bytes);
+        self.states.insert(kept.unwrap_or_else(|| storage(gpu, "ray states", bytes))).clone()
     }
 
     /// Tiles of pairs, made when first asked for.
@@ -280,8 +295,21 @@ impl Renderer {
         )
     }
 
+    /// Empties what a target holds, before squares of it are drawn.
+    pub(crate) fn blank(&self, gpu: &Gpu, target: &mut Target, next: &Squares) {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        target.blank(&mut encoder, &self.zeros, next);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
     /// Casts one view piece by piece: rows, and for rays that are too long for one dispatch ranges of samples.
-    fn cast(&mut self, gpu: &Gpu, prepared: &Prepared, view: &View, target: &Target) -> Result<(), GpuError> {
+    fn cast(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        view: &View,
+        target: &mut Target,
+    ) -> Result<(), GpuError> {
         let parameters = &prepared.parameters;
         let [width, height] = view.size;
         let state_row_bytes = u64::from(width) * RAY_STATE_BYTES;
@@ -291,8 +319,9 @@ impl Renderer {
         let iterations = prepared.iterations_per_sample;
         let may_be_split = sample_limit(most_samples, iterations, 1.0) != u32::MAX;
         let kept_rows = if may_be_split { state_rows } else { BAND_ROWS };
-        let states = storage(gpu, "ray states", state_row_bytes * u64::from(kept_rows));
-        let list = prepared.lists_tiles.then(|| self.tile_pass.list(&gpu.device, view.size));
+        let states = self.states(gpu, state_row_bytes * u64::from(kept_rows));
+        let kept_list = self.tile_list.take();
+        let list = prepared.lists_tiles.then(|| self.tile_pass.list(&gpu.device, view.size, kept_list));
         let tiles = list.as_ref().map_or(&self.unused[1], |list| &list.tiles);
         let target_group = self.target_group(gpu, target, [&states, tiles]);
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target_group };
@@ -301,12 +330,8 @@ impl Renderer {
         let bands = band_samples(parameters, view);
         let bands_with_states = if may_be_split { state_rows / BAND_ROWS } else { u32::MAX };
         let covered = Squares::covered(view, &parameters.visible_corners_world());
-        let mut piece = ViewUniform::new(parameters, view);
-        piece.first_row = covered.bands.start * BAND_ROWS;
-        piece.first_column = covered.columns.start * BAND_ROWS;
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        target.clear(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
+        let mut piece = ViewUniform::of_squares(parameters, view, &covered);
+        self.blank(gpu, target, &covered);
         let last_row = height.min(covered.bands.end * BAND_ROWS);
         while piece.first_row < last_row {
             let budget = self.pacer.budget(reads);
@@ -330,7 +355,7 @@ impl Renderer {
                     .as_ref()
                     .map_or(Workgroups::Counted(squares), |list| Workgroups::Listed(&list.groups));
                 if let Some(list) = list.as_ref().filter(|_| piece.first_sample == 0) {
-                    list.clear(&gpu.queue);
+                    list.clear(&gpu.queue, &mut encoder);
                     self.tile_pass.dispatch(&mut encoder, list, &bindings, squares);
                 }
                 cast_pass::dispatch(&mut encoder, &pipeline, &bindings, workgroups);
@@ -343,33 +368,8 @@ impl Renderer {
             }
             piece.first_row += piece.row_count;
         }
+        self.tile_list = list;
         Ok(())
-    }
-}
-
-/// Squares of `BAND_ROWS` pixels that a body can cover.
-#[derive(Debug, Clone)]
-pub(crate) struct Squares {
-    /// From the left.
-    pub(crate) columns: Range<u32>,
-    /// From the top.
-    pub(crate) bands: Range<u32>,
-}
-
-impl Squares {
-    pub(crate) fn covered(view: &View, corners_world: &[DVec3]) -> Self {
-        let covered = PixelRect::around(view, corners_world.iter().copied());
-        let squares = |pixels: Range<u32>| pixels.start / BAND_ROWS..pixels.end.div_ceil(BAND_ROWS);
-        Self { columns: squares(covered.columns), bands: squares(covered.rows) }
-    }
-
-    pub(crate) fn counts(&self) -> [u32; 2] {
-        [self.columns.len() as u32, self.bands.len() as u32]
-    }
-
-    /// Rows of pixels of a picture of the given height.
-    pub(crate) fn rows(&self, height: u32) -> u32 {
-        height.min(self.bands.end * BAND_ROWS).saturating_sub(self.bands.start * BAND_ROWS)
     }
 }
 

@@ -1,8 +1,16 @@
 //! Where a view is cast to: colour, depth and sample counts of one picture, and their way back to the host.
 
 use crate::gpu::{Gpu, GpuError};
+use crate::pacer::BAND_ROWS;
+use crate::squares::Squares;
 use wheatstone_core::image::Image;
 use wheatstone_core::reference::{Cast, Reads};
+
+/// Bytes of a pixel of either texture.
+const PIXEL_BYTES: u32 = 16;
+
+/// Zeros that are copied at once: more than the longest row of a picture.
+const ZERO_BYTES: u64 = 1 << 20;
 
 /// Textures of one picture on the device.
 #[derive(Debug)]
@@ -12,6 +20,8 @@ pub struct Target {
     pub(crate) color: wgpu::Texture,
     /// Depth of the first hit in metres, samples taken, reads of the skip map, 1 where something was hit; 32-bit float.
     pub(crate) depth: wgpu::Texture,
+    /// What is not blank at most.
+    pub(crate) drawn: Squares,
 }
 
 impl Target {
@@ -35,26 +45,68 @@ impl Target {
                 format,
                 usage: wgpu::TextureUsages::STORAGE_BINDING
                     | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
+                    | wgpu::TextureUsages::COPY_SRC
+                    | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             })
         };
         let color = texture("color target", wgpu::TextureFormat::Rgba32Float);
         let depth = texture("depth target", wgpu::TextureFormat::Rgba32Float);
         gpu.check()?;
-        Ok(Self { size, color, depth })
+        Ok(Self { size, color, depth, drawn: Squares::default() })
+    }
+
+    /// The buffer of zeros that [`Target::blank`] copies.
+    pub(crate) fn zeros(gpu: &Gpu) -> wgpu::Buffer {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("zeros"),
+            size: ZERO_BYTES,
+            usage: wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Encodes the emptying of what has been drawn (nothing hit, no samples), before other squares are drawn.
+    ///
+    /// Copies zeros: on software Vulkan in half the time of a render pass and a tenth of a kernel's.
+    pub(crate) fn blank(&mut self, encoder: &mut wgpu::CommandEncoder, zeros: &wgpu::Buffer, next: &Squares) {
+        let drawn = std::mem::replace(&mut self.drawn, next.clone());
+        let columns = drawn.columns.start * BAND_ROWS..self.size[0].min(drawn.columns.end * BAND_ROWS);
+        let rows = drawn.bands.start * BAND_ROWS..self.size[1].min(drawn.bands.end * BAND_ROWS);
+        let row_bytes = columns.len() as u32 * PIXEL_BYTES;
+        let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        if columns.is_empty() {
+            return;
+        }
+        let rows_at_once = ZERO_BYTES as u32 / padded_row_bytes;
+        for first_row in rows.clone().step_by(rows_at_once as usize) {
+            for texture in [&self.color, &self.depth] {
+                encoder.copy_buffer_to_texture(
+                    wgpu::TexelCopyBufferInfo {
+                        buffer: zeros,
+                        layout: wgpu::TexelCopyBufferLayout {
+                            offset: 0,
+                            bytes_per_row: Some(padded_row_bytes),
+                            rows_per_image: None,
+                        },
+                    },
+                    wgpu::TexelCopyTextureInfo {
+                        origin: wgpu::Origin3d { x: columns.start, y: first_row, z: 0 },
+                        ..texture.as_image_copy()
+                    },
+                    wgpu::Extent3d {
+                        width: columns.len() as u32,
+                        height: rows_at_once.min(rows.end - first_row),
+                        depth_or_array_layers: 1,
+                    },
+                );
+            }
+        }
     }
 
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
-    }
-
-    /// Encodes the blank picture: nothing hit, no samples.
-    pub(crate) fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
-        for texture in [&self.color, &self.depth] {
-            encoder.clear_texture(texture, &wgpu::ImageSubresourceRange::default());
-        }
     }
 
     /// Reads the picture back.

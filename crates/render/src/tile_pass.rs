@@ -51,24 +51,26 @@ impl TilePass {
         Ok(Self { list_layout, pipeline })
     }
 
-    /// The list of a picture; empty.
-    pub(crate) fn list(&self, device: &wgpu::Device, size: [u32; 2]) -> TileList {
+    /// The list of a picture: the one given if it has room.
+    pub(crate) fn list(&self, device: &wgpu::Device, size: [u32; 2], kept: Option<TileList>) -> TileList {
         let tiles = tiles_of(size);
+        if let Some(kept) = kept.filter(|list| list.is_listed.size() >= 4 * tiles) {
+            return kept;
+        }
         let buffer = |label, words: u64, usage| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size: 4 * words,
-                usage: wgpu::BufferUsages::STORAGE | usage,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | usage,
                 mapped_at_creation: false,
             })
         };
-        let copied_to = wgpu::BufferUsages::COPY_DST;
-        let groups = buffer("workgroups", 3, copied_to | wgpu::BufferUsages::INDIRECT);
+        let groups = buffer("workgroups", 3, wgpu::BufferUsages::INDIRECT);
         let is_listed = buffer("listed", tiles, wgpu::BufferUsages::empty());
-        let tiles = buffer("tiles", 1 + tiles, copied_to);
+        let tiles = buffer("tiles", 1 + tiles, wgpu::BufferUsages::empty());
         let group =
             bind(device, &self.list_layout, &[groups.as_entire_binding(), is_listed.as_entire_binding()]);
-        TileList { groups, tiles, group }
+        TileList { groups, tiles, is_listed, group }
     }
 
     /// Encodes the listing of a piece of squares of `BAND_ROWS` pixels along x and y.
@@ -84,18 +86,22 @@ impl TilePass {
     }
 }
 
-/// Tiles of one picture. A tile is listed once: pieces of a picture are of whole tiles.
+/// Tiles of a piece of a picture, each once.
+#[derive(Debug)]
 pub(crate) struct TileList {
     /// Workgroups of the cast along x, y and z.
     pub(crate) groups: wgpu::Buffer,
     /// How many there are, and their numbers.
     pub(crate) tiles: wgpu::Buffer,
+    /// 1 for each tile that is in the list of a piece.
+    is_listed: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
 
 impl TileList {
     /// Empties the list, before the next piece is listed.
-    pub(crate) fn clear(&self, queue: &wgpu::Queue) {
+    pub(crate) fn clear(&self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.is_listed, 0, None);
         queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&[GROUPS_PER_ROW, 0, 1]));
         queue.write_buffer(&self.tiles, 0, bytemuck::bytes_of(&0_u32));
     }

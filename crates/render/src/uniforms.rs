@@ -2,6 +2,8 @@
 //! naga's layout.
 
 use crate::leap::LeapUniform;
+use crate::pacer::BAND_ROWS;
+use crate::squares::Squares;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat3, Vec3};
 use std::ops::Range;
@@ -161,6 +163,16 @@ impl CastUniform {
 }
 
 impl ViewUniform {
+    /// The rays of a view, some squares of the picture as one piece.
+    pub(crate) fn of_squares(parameters: &CastParameters, view: &View, squares: &Squares) -> Self {
+        Self {
+            first_row: squares.bands.start * BAND_ROWS,
+            row_count: squares.rows(view.size[1]),
+            first_column: squares.columns.start * BAND_ROWS,
+            ..Self::new(parameters, view)
+        }
+    }
+
     /// The rays of a view, the whole picture as one piece.
     pub(crate) fn new(parameters: &CastParameters, view: &View) -> Self {
         let rays = RayField::new(view, parameters.texture_from_world);

@@ -168,7 +168,7 @@ impl GpuEngine {
 
     pub(super) fn cast(&mut self, shot: Shot, views: &[View]) -> Result<Duration, GpuError> {
         self.fit_targets(views)?;
-        let targets = &self.targets[..views.len()];
+        let targets = &mut self.targets[..views.len()];
         let start = Instant::now();
         self.renderer.render(&self.gpu, &self.scenes[shot.0].prepared, views, targets)?;
         Ok(start.elapsed())
@@ -183,7 +183,8 @@ impl GpuEngine {
         let [reference, derived] = pairing.reference.and_other(views);
         let epipolar = Epipolar::new(&reference, &derived).map_err(PairError::from)?;
         self.fit_targets(&views).map_err(NoPair::Gpu)?;
-        let targets = pairing.reference.and_other([&self.targets[0], &self.targets[1]]);
+        let [left, right, ..] = &mut self.targets[..] else { unreachable!() };
+        let targets = pairing.reference.and_other([left, right]);
         let prepared = &self.scenes[shot.0].prepared;
         let start = Instant::now();
         let report = self.renderer.render_pair(&self.gpu, prepared, &epipolar, pairing.method(), targets)?;

@@ -27,5 +27,5 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
         slab--;
     }
     state.is_finished |= select(0u, 1u, slab < last && furthest <= last);
-    return SegmentedRay(0u, slab + 1, state, state);
+    return SegmentedRay(0u, slab + 1, 0u, state, state);
 }

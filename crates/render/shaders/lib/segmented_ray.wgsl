@@ -10,6 +10,8 @@ struct SegmentedRay {
     next: u32,
     // The segment's slab; nearer than all before the first.
     slab: i32,
+    // The first sample behind it.
+    slab_end: u32,
     // What the ray holds in front of the segment.
     state: RayState,
     // What it holds in the segment.
@@ -33,5 +35,5 @@ fn is_spent() -> bool {
 fn start_segments(ray: Ray) -> SegmentedRay {
     var state = start_ray(ray);
     state.is_finished = select(0u, 1u, ray.sample_count == 0u);
-    return SegmentedRay(0u, view.pair.nearest + 1, state, state);
+    return SegmentedRay(0u, view.pair.nearest + 1, 0u, state, state);
 }

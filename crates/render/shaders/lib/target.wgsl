@@ -5,7 +5,9 @@ import package::lib::ray_state::{NOTHING_HIT, Pixel};
 // Depth of the first hit in metres, samples taken, reads of the skip map, 1 where something was hit.
 @group(2) @binding(1) var depth_target: texture_storage_2d<rgba32float, write>;
 
-// Both are zero before a cast.
+// What is before a cast.
+const BLANK = Pixel(vec4f(0.0), NOTHING_HIT, 0u, 0u);
+
 fn store(pixel: vec2u, finished: Pixel) {
     let is_hit = select(0.0, 1.0, finished.depth_m != NOTHING_HIT);
     textureStore(color_target, pixel, finished.color);

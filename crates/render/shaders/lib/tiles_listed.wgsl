@@ -1,5 +1,4 @@
-import package::lib::ray_state::{NOTHING_HIT, Pixel};
-import package::lib::target::{store};
+import package::lib::target::{BLANK, store};
 import package::lib::tile_list::{GROUPS_PER_ROW, TILE, pixel_in_tile, tile_list};
 
 // The pixels of listed tiles: a workgroup takes one tile.
@@ -20,5 +19,5 @@ fn pixel_of_lane(group: vec3u, lane: u32) -> vec2u {
 
 // Makes a pixel blank whose ray misses: a listed tile may hold something.
 fn store_miss(pixel: vec2u) {
-    store(pixel, Pixel(vec4f(0.0), NOTHING_HIT, 0u, 0u));
+    store(pixel, BLANK);
 }

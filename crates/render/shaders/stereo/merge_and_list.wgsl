@@ -1,16 +1,12 @@
 import package::lib::merged::{Merged, merged_at};
-import package::lib::mirrored::{mirrored};
-import package::lib::strip_bands::{is_reached};
+import package::lib::merged_tile::{TILES, tile_of_invocation};
 import package::lib::target::{store};
-import package::lib::tile_list::{GROUPS_PER_ROW, TILE, tile_list, tile_of_pixel};
-import package::lib::view::{BAND_ROWS, view};
+import package::lib::tile_list::{GROUPS_PER_ROW, tile_list, tile_of_pixel};
+import package::lib::view::{view};
 
 // Composites what the strips have left for each derived pixel, and lists the tiles that are better cast: where rays ended that
 // they would have needed, and where the picture changes so quickly from column to column that samples half a column off
-// show. An invocation takes a tile.
-
-// Tiles of a workgroup, along x and y; `LISTED_TILES` of the host.
-const TILES = vec2u(8u, 4u);
+// show.
 
 // Mean change of slope between columns, over the pixels of a tile and summed over the channels, in parts of their standard
 // deviation and `CONTRAST`, above which a tile is cast: DSSIM weighs errors so, too.
@@ -26,12 +22,9 @@ fn merged_in_row(column: i32, row: u32) -> Merged {
 
 @compute @workgroup_size(TILES.x, TILES.y)
 fn merge_and_list(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    let first = vec2u(view.first_column, view.first_row) + (group.xy * TILES + local.xy) * TILE;
-    var end = min(first + TILE, vec2u(view.width, view.first_row + view.row_count));
-    let columns = vec2i(mirrored(i32(first.x) - 1), mirrored(i32(first.x + TILE.x)));
-    if !is_reached(first.y / BAND_ROWS, min(columns.x, columns.y), max(columns.x, columns.y)) {
-        end.y = first.y;
-    }
+    let tile = tile_of_invocation(group, local);
+    let first = tile.first;
+    let end = tile.end;
     var roughness = 0.0;
     var sum = vec4f(0.0);
     var sum_of_squares = vec4f(0.0);

@@ -1,14 +1,15 @@
 import package::lib::merged::{merged_at};
+import package::lib::merged_tile::{TILES, tile_of_invocation};
 import package::lib::target::{store};
-import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece};
 
 // Composites what the strips have left for each derived pixel.
 
-@compute @workgroup_size(BAND_ROWS, BAND_ROWS)
+@compute @workgroup_size(TILES.x, TILES.y)
 fn merge_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    let pixel = first_pixel_of_group(group) + local.xy;
-    if is_outside_piece(pixel) {
-        return;
+    let tile = tile_of_invocation(group, local);
+    for (var y = tile.first.y; y < tile.end.y; y++) {
+        for (var x = tile.first.x; x < tile.end.x; x++) {
+            store(vec2u(x, y), merged_at(vec2u(x, y)).pixel);
+        }
     }
-    store(pixel, merged_at(pixel).pixel);
 }

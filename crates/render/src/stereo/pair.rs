@@ -3,8 +3,9 @@
 use super::{Form, PairError, PairMethod, Quality, RepairList};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::Bindings;
-use crate::pacer::{BAND_ROWS, ITERATION_LIMIT, spreading_stride};
-use crate::renderer::{Prepared, Renderer, Squares};
+use crate::pacer::{ITERATION_LIMIT, spreading_stride};
+use crate::renderer::{Prepared, Renderer};
+use crate::squares::Squares;
 use crate::target::Target;
 use crate::uniforms::{PairUniform, ViewUniform};
 use std::ops::Range;
@@ -69,7 +70,7 @@ impl Renderer {
         prepared: &Prepared,
         epipolar: &Epipolar,
         method: PairMethod,
-        targets: [&Target; 2],
+        mut targets: [&mut Target; 2],
     ) -> Result<PairReport, PairError> {
         let size = epipolar.reference().size;
         assert!(targets.iter().all(|target| target.size() == size), "targets have the size of their views");
@@ -79,12 +80,8 @@ impl Renderer {
         if method.quality == Quality::Repaired && method.form != Form::Strips {
             return Err(PairError::Unrepaired);
         }
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        targets.iter().for_each(|target| target.clear(&mut encoder));
-        gpu.queue.submit([encoder.finish()]);
-        let Some(frame) = self.pair_frame(gpu, prepared, epipolar, targets)? else {
-            return Ok(PairReport::default());
-        };
+        let frame = self.pair_frame(gpu, prepared, epipolar, &mut targets);
+        let Some(frame) = frame else { return Ok(PairReport::default()) };
         let report = match method.form {
             Form::Strips => self.strips(gpu, method.quality).render(&frame),
             Form::Tiles => self.tiles(gpu).render(&frame),
@@ -92,41 +89,47 @@ impl Renderer {
         }?;
         match method.quality {
             Quality::Fast => Ok(report),
-            Quality::Repaired => self.repair(&frame, targets[1], report),
+            Quality::Repaired => self.repair(&frame, &*targets[1], report),
         }
     }
 
-    /// What the forms need; nothing if no ray meets the volume.
+    /// Empties both pictures and returns what the forms need; nothing if no ray meets the volume.
     fn pair_frame<'a>(
         &mut self,
         gpu: &'a Gpu,
         prepared: &'a Prepared,
         epipolar: &'a Epipolar,
-        targets: [&Target; 2],
-    ) -> Result<Option<PairFrame<'a>>, PairError> {
+        targets: &mut [&mut Target; 2],
+    ) -> Option<PairFrame<'a>> {
         let parameters = &prepared.parameters;
         let size = epipolar.reference().size;
         let corners = parameters.visible_corners_world();
-        let Some(depths_m) = epipolar.depths_m(&corners) else { return Ok(None) };
-        let slabs = epipolar.slabs().between(depths_m.start, depths_m.end);
-        let columns = epipolar.columns_of(&corners, &slabs.cast_columns(size[0]));
-        if columns.is_empty() {
-            return Ok(None);
-        }
-        let repairs = self.repairs(gpu, size);
         // Rows correspond: nothing is derived where no ray of the reference eye is.
         let [reference, derived] =
             [epipolar.reference(), epipolar.derived()].map(|view| Squares::covered(view, &corners));
-        Ok(Some(PairFrame {
+        let covered = [reference.clone(), Squares { bands: reference.bands, ..derived }];
+        for (target, covered) in targets.iter_mut().zip(&covered) {
+            self.blank(gpu, target, covered);
+        }
+        let depths_m = epipolar.depths_m(&corners)?;
+        let slabs = epipolar.slabs().between(depths_m.start, depths_m.end);
+        let columns = epipolar.columns_of(&corners, &slabs.cast_columns(size[0]));
+        if columns.is_empty() {
+            return None;
+        }
+        let repairs = self.repairs(gpu, size);
+        Some(PairFrame {
             gpu,
             prepared,
             epipolar,
             slabs,
             columns,
-            covered: [reference.clone(), Squares { bands: reference.bands, ..derived }],
-            targets: targets.map(|target| self.target_group(gpu, target, [&self.unused[0], &repairs.tiles])),
+            covered,
+            targets: targets
+                .each_ref()
+                .map(|target| self.target_group(gpu, target, [&self.unused[0], &repairs.tiles])),
             repairs,
-        }))
+        })
     }
 }
 
@@ -163,12 +166,9 @@ impl PairFrame<'_> {
         let covered = &self.covered[eye as usize];
         let is_software = self.gpu.description().is_software;
         let piece = ViewUniform {
-            first_row: covered.bands.start * BAND_ROWS,
-            row_count: covered.rows(self.size()[1]),
-            first_column: covered.columns.start * BAND_ROWS,
             band_stride: if is_software { spreading_stride(covered.bands.len() as u32) } else { 1 },
             pair: *pair,
-            ..ViewUniform::new(self.parameters(), self.epipolar.reference())
+            ..ViewUniform::of_squares(self.parameters(), self.epipolar.reference(), covered)
         };
         self.gpu.queue.write_buffer(&self.prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
         Bindings {

@@ -6,7 +6,7 @@ use crate::cast_pass::{self, Workgroups};
 use crate::gpu::Gpu;
 use crate::groups::{Bindings, RAY_STATE_BYTES};
 use crate::pacer::sample_limit;
-use crate::renderer::{MOST_STATE_BYTES, Renderer, storage};
+use crate::renderer::{MOST_STATE_BYTES, Renderer};
 use crate::target::Target;
 use crate::tile_pass::{GROUPS_PER_ROW, tiles_of};
 use crate::uniforms::ViewUniform;
@@ -75,7 +75,7 @@ impl Renderer {
         if state_bytes > MOST_STATE_BYTES {
             return Err(PairError::LongRays { samples: most_samples });
         }
-        let states = storage(gpu, "ray states", state_bytes);
+        let states = self.states(gpu, state_bytes);
         let target = self.target_group(gpu, derived, [&states, &frame.repairs.tiles]);
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target };
         let variant = prepared.variant.of_listed_tiles();

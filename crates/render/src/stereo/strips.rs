@@ -51,8 +51,8 @@ const CUTS_NONE: &[(&str, &str)] =
 const CUTS_KEPT: &[(&str, &str)] =
     &[("lib/segment_sink", "stereo/sink_strips"), ("lib/cuts", "lib/cuts_kept")];
 
-/// Pixels of a workgroup that merges and lists, along x and y: `TILES` of `stereo/merge_and_list.wgsl`.
-const LISTED_PIXELS: [u32; 2] = [32, 8];
+/// Pixels that a workgroup merges, along x and y: `TILES` of `lib/merged_tile.wgsl`.
+const MERGED_PIXELS: [u32; 2] = [32, 8];
 
 /// Pipelines, and the buffers of the last pair.
 #[derive(Debug)]
@@ -61,8 +61,6 @@ pub(crate) struct StripPass {
     list: VariantPipelines,
     cast: VariantPipelines,
     merge: VariantPipelines,
-    /// Pixels that a workgroup merges, along x and y.
-    merged_pixels: [u32; 2],
     notes_cuts: bool,
     kept: Option<StripBuffers>,
 }
@@ -70,9 +68,9 @@ pub(crate) struct StripPass {
 impl StripPass {
     /// Nothing built yet.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts, quality: Quality) -> Self {
-        let (cuts, merge, entry_point, merged_pixels) = match quality {
-            Quality::Fast => (CUTS_NONE, "stereo/merge_strips", "merge_strips", [BAND_ROWS; 2]),
-            Quality::Repaired => (CUTS_KEPT, "stereo/merge_and_list", "merge_and_list", LISTED_PIXELS),
+        let (cuts, merge, entry_point) = match quality {
+            Quality::Fast => (CUTS_NONE, "stereo/merge_strips", "merge_strips"),
+            Quality::Repaired => (CUTS_KEPT, "stereo/merge_and_list", "merge_and_list"),
         };
         let smallest = [COLOR_BYTES, DEPTH_BYTES, 2 * BAND_BYTES, PROGRESS_BYTES, CUT_BYTES, GROUPS_BYTES];
         let types = smallest.map(storage_buffer);
@@ -82,7 +80,7 @@ impl StripPass {
         let list = VariantPipelines::new(layout.clone(), "stereo/list_columns", "list_columns", &[]);
         let cast = VariantPipelines::new(layout, "stereo/cast_strips", "cast_strips", cuts);
         let notes_cuts = quality == Quality::Repaired;
-        Self { strip_layout, list, cast, merge, merged_pixels, notes_cuts, kept: None }
+        Self { strip_layout, list, cast, merge, notes_cuts, kept: None }
     }
 
     /// Makes a pair.
@@ -121,7 +119,7 @@ impl StripPass {
         let composite = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &merge, Some(&group));
             let [width, height] = frame.squares(Eye::Derived).map(|squares| squares * BAND_ROWS);
-            let [pixels_x, pixels_y] = self.merged_pixels;
+            let [pixels_x, pixels_y] = MERGED_PIXELS;
             pass.dispatch_workgroups(width.div_ceil(pixels_x), height.div_ceil(pixels_y), 1);
         })?;
         self.kept = Some(buffers);
@@ -268,7 +266,7 @@ mod tests {
             ("lib/volume", "lib/volume_filtered"),
         ];
         let text = compose("stereo/merge_and_list", &choices).unwrap().text;
-        let [x, y] = LISTED_PIXELS;
+        let [x, y] = MERGED_PIXELS;
         for line in [
             format!("const TILES = vec2u({}u, {}u);", x / 4, y / 2),
             "const TILE = vec2u(4u, 2u);".to_owned(),

@@ -36,7 +36,7 @@ impl PairTilePass {
         let types = [storage_buffer(PARTIAL_BYTES[0]), storage_buffer(PARTIAL_BYTES[1])];
         let tile_layout = layout(device, "pair tiles", &types);
         let layout = groups.pipeline_layout(device, "pair tiles", Some(&tile_layout));
-        let merge = VariantPipelines::new(layout.clone(), "stereo/merge_strips", "merge_strips", FILES);
+        let merge = VariantPipelines::new(layout.clone(), "stereo/merge_tiles", "merge_tiles", FILES);
         let cast = VariantPipelines::new(layout, "stereo/cast_tiles", "cast_tiles", FILES);
         Self { tile_layout, cast, merge, kept: None }
     }

@@ -7,11 +7,14 @@
 mod device;
 mod errors;
 mod leap;
+mod pairs;
 mod parity;
 mod scene;
 mod segments;
 mod skip;
 mod stereo;
 mod stereo_forms;
+mod stereo_repair;
+mod targets;
 mod tolerance;
 mod upload;

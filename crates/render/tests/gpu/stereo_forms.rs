@@ -1,6 +1,7 @@
 //! Every form of a pair against the others and against the sequential order of compositing, on random volumes and rigs.
 
 use crate::device::on_device;
+use crate::pairs::render_pair;
 use crate::scene::*;
 use glam::{DAffine3, DVec3};
 use wheatstone_core::cast::CastParameters;
@@ -12,8 +13,7 @@ use wheatstone_core::view::{Projection, Rig, View};
 use wheatstone_core::volume::{Grid, Volume, Voxels};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
 use wheatstone_render::{
-    Form, Gpu, GpuVolume, LayerFormat, Leap, PairError, PairMethod, Prepared, Renderer, Sources, Target,
-    TexelFormat,
+    Form, Gpu, GpuVolume, LayerFormat, Leap, PairError, PairMethod, Prepared, Renderer, Sources, TexelFormat,
 };
 
 /// Forms that do not round segments to 8 bits.
@@ -104,10 +104,8 @@ impl Case {
     }
 
     fn pair(&self, gpu: &Gpu, renderer: &mut Renderer, prepared: &Prepared, form: Form) -> [Cast; 2] {
-        let targets = [(); 2].map(|()| Target::new(gpu, self.epipolar.reference().size).unwrap());
         let method = PairMethod { form, ..PairMethod::default() };
-        renderer.render_pair(gpu, prepared, &self.epipolar, method, targets.each_ref()).unwrap();
-        targets.map(|target| target.read(gpu).unwrap())
+        render_pair(gpu, renderer, prepared, &self.epipolar, method).unwrap()
     }
 
     /// Both eyes in the sequential order.
@@ -285,9 +283,8 @@ fn more_layers_than_the_device_holds_are_said() {
         let case = Case::new(0, 3_000, Mode::Composite);
         let uploaded = GpuVolume::upload_as(gpu, &case.volume, FORMAT, &mut |_, _| {}).unwrap();
         let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), case.parameters.clone()).unwrap();
-        let targets = [(); 2].map(|()| Target::new(gpu, case.epipolar.reference().size).unwrap());
         let method = PairMethod { form: Form::Layers(LayerFormat::Rgba8Unorm), ..PairMethod::default() };
-        let refused = renderer.render_pair(gpu, &prepared, &case.epipolar, method, targets.each_ref());
-        assert!(matches!(refused, Err(PairError::Layers { layers: 3_000, .. })), "{refused:?}");
+        let refused = render_pair(gpu, renderer, &prepared, &case.epipolar, method);
+        assert!(matches!(refused, Err(PairError::Layers { layers: 3_000, .. })));
     });
 }
