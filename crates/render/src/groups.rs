@@ -141,7 +141,7 @@ fn texture_3d(sample_type: wgpu::TextureSampleType) -> wgpu::BindingType {
     }
 }
 
-fn storage_texture(format: wgpu::TextureFormat) -> wgpu::BindingType {
+pub(crate) fn storage_texture(format: wgpu::TextureFormat) -> wgpu::BindingType {
     wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::WriteOnly,
         format,

@@ -3,6 +3,7 @@
 //! [`Gpu`] is the device, [`GpuVolume`] an uploaded volume, [`Renderer`] the one loop over views. Every kernel
 //! has its CPU twin in `wheatstone_core::reference`.
 
+mod buffers;
 mod cast_pass;
 pub mod gpu;
 mod gradient_map;

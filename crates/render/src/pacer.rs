@@ -25,6 +25,9 @@ const SHORTEST_TIMED: Duration = Duration::from_millis(2);
 /// 65,000, summed over nested loops.
 pub(crate) const ITERATION_LIMIT: u32 = 60_000;
 
+/// Rays that software Vulkan casts in lockstep; each may wait for the others.
+pub(crate) const LOCKSTEP_RAYS: u32 = 8;
+
 /// Rows that a piece is a whole number of: the side of a workgroup, `BAND_ROWS` of `cast.wgsl`.
 pub(crate) const BAND_ROWS: u32 = 8;
 

@@ -1,5 +1,6 @@
 //! The renderer: what is kept between frames, and the one loop over views.
 
+use crate::buffers::storage;
 use crate::cast_pass::{self, Tiles, Variant, VariantPipelines, Workgroups};
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
@@ -7,7 +8,7 @@ use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::leap::Leap;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
 use crate::squares::Squares;
-use crate::stereo::{LayerFormat, LayerPass, PairTilePass, Quality, RepairList, StripPass};
+use crate::stereo::{LayerFormat, LayerPass, PairTilePass, Quality, RepairPass, Repairs, StripPass};
 use crate::target::Target;
 use crate::tile_pass::{self, TileList, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
@@ -37,7 +38,8 @@ pub struct Renderer {
     /// What targets are emptied with.
     zeros: wgpu::Buffer,
     strip_passes: HashMap<Quality, StripPass>,
-    repairs: Option<RepairList>,
+    repair_pass: Option<RepairPass>,
+    repairs: Option<Repairs>,
     pair_tile_pass: Option<PairTilePass>,
     layer_passes: HashMap<LayerFormat, LayerPass>,
     sampler: wgpu::Sampler,
@@ -110,7 +112,8 @@ impl Renderer {
                 view_formats: &[],
             })
             .create_view(&wgpu::TextureViewDescriptor::default());
-        let unused = [(); 2].map(|()| storage(gpu, "unused", RAY_STATE_BYTES));
+        let unused =
+            [(); 2].map(|()| storage(&gpu.device, "unused", RAY_STATE_BYTES, wgpu::BufferUsages::empty()));
         gpu.check()?;
         Ok(Self {
             groups,
@@ -120,6 +123,7 @@ impl Renderer {
             states: None,
             zeros,
             strip_passes: HashMap::new(),
+            repair_pass: None,
             repairs: None,
             pair_tile_pass: None,
             layer_passes: HashMap::new(),
@@ -251,18 +255,27 @@ impl Renderer {
         self.strip_passes.entry(quality).or_insert_with(|| StripPass::new(&gpu.device, &self.groups, quality))
     }
 
-    /// An empty list of tiles to repair, the last one if it has room for a picture.
-    pub(crate) fn repairs(&mut self, gpu: &Gpu, size: [u32; 2]) -> RepairList {
-        let kept = self.repairs.take().filter(|list| list.has_room(size));
-        let list = kept.unwrap_or_else(|| RepairList::new(gpu, size));
-        list.clear(&gpu.queue);
-        self.repairs.insert(list).clone()
+    /// Room for the repairs of a picture: that of the last one if it is large enough.
+    pub(crate) fn repairs(&mut self, gpu: &Gpu, size: [u32; 2]) -> Repairs {
+        let kept = self.repairs.take().filter(|repairs| repairs.has_room(size));
+        let repairs = kept.unwrap_or_else(|| Repairs::new(gpu, size));
+        repairs.clear(&gpu.queue);
+        self.repairs.insert(repairs).clone()
+    }
+
+    /// The listing of repairs, made when first asked for.
+    pub(crate) fn repair_pass(&mut self, gpu: &Gpu) -> Result<&RepairPass, GpuError> {
+        match self.repair_pass.take() {
+            Some(pass) => Ok(self.repair_pass.insert(pass)),
+            None => Ok(self.repair_pass.insert(RepairPass::new(&gpu.device, &self.groups)?)),
+        }
     }
 
     /// Room for rays that are cast in parts: that of the last picture if it is large enough.
     pub(crate) fn states(&mut self, gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
         let kept = self.states.take().filter(|states| states.size() >= bytes);
-        self.states.insert(kept.unwrap_or_else(|| storage(gpu, "ray states", bytes))).clone()
+        let new = || storage(&gpu.device, "ray states", bytes, wgpu::BufferUsages::empty());
+        self.states.insert(kept.unwrap_or_else(new)).clone()
     }
 
     /// Tiles of pairs, made when first asked for.
@@ -414,16 +427,6 @@ fn packed(entries: &[LutEntry]) -> Vec<[u32; 4]> {
 /// whether one of them or all need a sample; longer runs spare it searches (`docs/benchmarks/`).
 fn shortest_run(gpu: &Gpu) -> f32 {
     if gpu.description().is_software { 12.0 } else { 1.0 }
-}
-
-/// A buffer that only shaders read and write; zero at first.
-pub(crate) fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size,
-        usage: wgpu::BufferUsages::STORAGE,
-        mapped_at_creation: false,
-    })
 }
 
 fn init_buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -3,15 +3,17 @@
 //! Software Vulkan runs the whole of a kernel for every eight rays in lockstep, also where all of them miss. A kernel that
 //! only finds that out is far cheaper; the cast is then sent to the others alone.
 
+use crate::buffers::storage;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{Bindings, GroupLayouts, bind, layout, storage_buffer};
 use crate::leap::Leap;
 use crate::pipeline::{KernelFiles, build};
+use wgpu::BufferUsages;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Mode;
 
 /// Pixels of a tile along x and y: `TILE` of `lib/tile_list.wgsl`.
-const TILE: [u32; 2] = [4, 2];
+pub(crate) const TILE: [u32; 2] = [4, 2];
 
 /// Workgroups of a cast along x: `GROUPS_PER_ROW` of `lib/tile_list.wgsl`.
 pub(crate) const GROUPS_PER_ROW: u32 = 256;
@@ -57,17 +59,11 @@ impl TilePass {
         if let Some(kept) = kept.filter(|list| list.is_listed.size() >= 4 * tiles) {
             return kept;
         }
-        let buffer = |label, words: u64, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: 4 * words,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | usage,
-                mapped_at_creation: false,
-            })
-        };
-        let groups = buffer("workgroups", 3, wgpu::BufferUsages::INDIRECT);
-        let is_listed = buffer("listed", tiles, wgpu::BufferUsages::empty());
-        let tiles = buffer("tiles", 1 + tiles, wgpu::BufferUsages::empty());
+        let buffer =
+            |label, words, besides| storage(device, label, 4 * words, BufferUsages::COPY_DST | besides);
+        let groups = buffer("workgroups", 3, BufferUsages::INDIRECT);
+        let is_listed = buffer("listed", tiles, BufferUsages::empty());
+        let tiles = buffer("tiles", 1 + tiles, BufferUsages::empty());
         let group =
             bind(device, &self.list_layout, &[groups.as_entire_binding(), is_listed.as_entire_binding()]);
         TileList { groups, tiles, is_listed, group }

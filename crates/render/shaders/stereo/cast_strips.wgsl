@@ -29,6 +29,7 @@ struct Progress {
 const NOTHING_NOTED = vec2i(0x7fffffff, -0x7fffffff);
 
 @group(3) @binding(3) var<storage, read_write> progress: array<Progress>;
+
 // Empties the first partial sums of a strip.
 fn empty_partials(row: u32, strip: u32, count: u32) {
     let first = partial_at(row, strip, first_reached(strip));

@@ -12,6 +12,6 @@ pub use error::PairError;
 pub(crate) use layers::LayerPass;
 pub use method::{Form, LayerFormat, PairMethod, Quality};
 pub use pair::PairReport;
-pub(crate) use repair::RepairList;
+pub(crate) use repair::{RepairPass, Repairs};
 pub(crate) use strips::StripPass;
 pub(crate) use tiles::PairTilePass;

@@ -1,9 +1,9 @@
 //! One pair of pictures.
 
-use super::{Form, PairError, PairMethod, Quality, RepairList};
+use super::{Form, PairError, PairMethod, Quality, Repairs};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::Bindings;
-use crate::pacer::{ITERATION_LIMIT, spreading_stride};
+use crate::pacer::{ITERATION_LIMIT, LOCKSTEP_RAYS, spreading_stride};
 use crate::renderer::{Prepared, Renderer};
 use crate::squares::Squares;
 use crate::target::Target;
@@ -13,9 +13,6 @@ use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Mode;
 use wheatstone_core::stereo::{Epipolar, SlabRange};
-
-/// Rays that software Vulkan casts in lockstep; each may wait for the others.
-const LOCKSTEP_RAYS: u32 = 8;
 
 /// What a pair has taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,8 +41,8 @@ pub(crate) struct PairFrame<'a> {
     /// Squares of pixels that the volume covers, in the reference picture and in the derived one.
     covered: [Squares; 2],
     targets: [wgpu::BindGroup; 2],
-    /// Tiles of the derived picture that are to be cast.
-    pub(crate) repairs: RepairList,
+    /// What is found out about the derived picture's tiles, if any are to be repaired.
+    pub(crate) repairs: Option<Repairs>,
 }
 
 /// Which picture of a pair.
@@ -80,16 +77,17 @@ impl Renderer {
         if method.quality == Quality::Repaired && method.form != Form::Strips {
             return Err(PairError::Unrepaired);
         }
-        let frame = self.pair_frame(gpu, prepared, epipolar, &mut targets);
+        let repairs = (method.quality == Quality::Repaired).then(|| self.repairs(gpu, size));
+        let frame = self.pair_frame(gpu, prepared, epipolar, repairs, &mut targets);
         let Some(frame) = frame else { return Ok(PairReport::default()) };
         let report = match method.form {
             Form::Strips => self.strips(gpu, method.quality).render(&frame),
             Form::Tiles => self.tiles(gpu).render(&frame),
             Form::Layers(format) => self.layers(gpu, format).render(&frame),
         }?;
-        match method.quality {
-            Quality::Fast => Ok(report),
-            Quality::Repaired => self.repair(&frame, &*targets[1], report),
+        match &frame.repairs {
+            None => Ok(report),
+            Some(repairs) => self.repair(&frame, repairs, targets[1], report),
         }
     }
 
@@ -99,6 +97,7 @@ impl Renderer {
         gpu: &'a Gpu,
         prepared: &'a Prepared,
         epipolar: &'a Epipolar,
+        repairs: Option<Repairs>,
         targets: &mut [&mut Target; 2],
     ) -> Option<PairFrame<'a>> {
         let parameters = &prepared.parameters;
@@ -117,19 +116,10 @@ impl Renderer {
         if columns.is_empty() {
             return None;
         }
-        let repairs = self.repairs(gpu, size);
-        Some(PairFrame {
-            gpu,
-            prepared,
-            epipolar,
-            slabs,
-            columns,
-            covered,
-            targets: targets
-                .each_ref()
-                .map(|target| self.target_group(gpu, target, [&self.unused[0], &repairs.tiles])),
-            repairs,
-        })
+        let tiles = repairs.as_ref().map_or(&self.unused[1], |repairs| &repairs.tiles);
+        let targets =
+            targets.each_ref().map(|target| self.target_group(gpu, target, [&self.unused[0], tiles]));
+        Some(PairFrame { gpu, prepared, epipolar, slabs, columns, covered, targets, repairs })
     }
 }
 
@@ -178,12 +168,17 @@ impl PairFrame<'_> {
         }
     }
 
-    /// Encodes commands, sends them off, waits until they are done and returns the time that they took.
-    pub(crate) fn run(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<Duration, GpuError> {
+    /// Encodes commands and sends them off.
+    pub(crate) fn send(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encode(&mut encoder);
-        let start = Instant::now();
         self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Encodes commands, sends them off, waits until they are done and returns the time that they took.
+    pub(crate) fn run(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<Duration, GpuError> {
+        let start = Instant::now();
+        self.send(encode);
         self.gpu.wait()?;
         Ok(start.elapsed())
     }

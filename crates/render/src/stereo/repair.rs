@@ -1,56 +1,93 @@
-//! Tiles of the derived picture that are cast directly.
+//! Repair: tiles of the derived picture that are cast directly.
 
 use super::PairError;
-use super::pair::{PairFrame, PairReport};
+use super::pair::{Eye, PairFrame, PairReport};
+use super::strips::merged_workgroups;
+use crate::buffers::storage;
 use crate::cast_pass::{self, Workgroups};
-use crate::gpu::Gpu;
-use crate::groups::{Bindings, RAY_STATE_BYTES};
+use crate::gpu::{Gpu, GpuError};
+use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind, layout, storage_buffer};
 use crate::pacer::sample_limit;
+use crate::pipeline::{KernelFiles, build};
 use crate::renderer::{MOST_STATE_BYTES, Renderer};
 use crate::target::Target;
-use crate::tile_pass::{GROUPS_PER_ROW, tiles_of};
-use crate::uniforms::ViewUniform;
+use crate::tile_pass::{GROUPS_PER_ROW, TILE, tiles_of};
+use crate::uniforms::{PairUniform, ViewUniform};
+use bytemuck::Zeroable as _;
 use std::time::Duration;
 
-/// Bytes of the arguments of an indirect dispatch: workgroups along x, y and z.
-pub(crate) const GROUPS_BYTES: u64 = 12;
+/// Bytes of a `RepairPlan`.
+pub(crate) const PLAN_BYTES: u64 = 4 * (4 + RATINGS as u64);
 
-/// Tiles of a picture that are to be cast.
+/// Kinds of tiles by the error expected of them: `RATINGS` of `stereo/list_repairs.wgsl`.
+const RATINGS: usize = 64;
+
+/// Format of what is measured of tiles.
+pub(crate) const MEASURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Bytes of that.
+const MEASURE_BYTES: u64 = 16;
+
+/// What is found out about the tiles of a derived picture, and which of them are to be cast.
 #[derive(Debug, Clone)]
-pub(crate) struct RepairList {
-    /// Workgroups of the cast along x, y and z.
-    pub(crate) groups: wgpu::Buffer,
-    /// How many there are, and their numbers.
+pub(crate) struct Repairs {
+    /// A `RepairPlan`, whose first words are the workgroups of the cast along x, y and z.
+    pub(crate) plan: wgpu::Buffer,
+    /// A pixel for each tile.
+    pub(crate) measures: wgpu::Texture,
+    /// How many tiles are to be cast, and their numbers.
     pub(crate) tiles: wgpu::Buffer,
 }
 
-impl RepairList {
-    /// Room for all tiles of a picture.
+impl Repairs {
+    /// Room for the tiles of a picture.
     pub(crate) fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let buffer = |label, size, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | usage,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer =
+            |label, size, besides| storage(&gpu.device, label, size, wgpu::BufferUsages::COPY_DST | besides);
+        let [width, height] = tile_counts(size);
+        let measures = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("measures"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: MEASURE_FORMAT,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
         Self {
-            groups: buffer("workgroups", GROUPS_BYTES, wgpu::BufferUsages::INDIRECT),
+            plan: buffer("repair plan", PLAN_BYTES, wgpu::BufferUsages::INDIRECT),
+            measures,
             tiles: buffer("tiles", tile_bytes(size), wgpu::BufferUsages::empty()),
         }
     }
 
-    /// Whether there is room for all tiles of a picture.
+    /// Whether there is room for the tiles of a picture.
     pub(crate) fn has_room(&self, size: [u32; 2]) -> bool {
-        self.tiles.size() >= tile_bytes(size)
+        let [width, height] = tile_counts(size);
+        self.measures.width() >= width
+            && self.measures.height() >= height
+            && self.tiles.size() >= tile_bytes(size)
     }
 
-    /// Empties the list.
+    /// Bytes on the device.
+    fn bytes(&self) -> u64 {
+        let measures = u64::from(self.measures.width()) * u64::from(self.measures.height()) * MEASURE_BYTES;
+        self.plan.size() + measures + self.tiles.size()
+    }
+
+    /// Forgets the last picture.
     pub(crate) fn clear(&self, queue: &wgpu::Queue) {
-        queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&[GROUPS_PER_ROW, 0, 1]));
+        let mut plan = [0; 4 + RATINGS];
+        [plan[0], plan[2]] = [GROUPS_PER_ROW, 1];
+        queue.write_buffer(&self.plan, 0, bytemuck::cast_slice(&plan));
         queue.write_buffer(&self.tiles, 0, bytemuck::bytes_of(&0_u32));
     }
+}
+
+/// Tiles of a picture along x and y.
+fn tile_counts([width, height]: [u32; 2]) -> [u32; 2] {
+    [width.div_ceil(TILE[0]), height.div_ceil(TILE[1])]
 }
 
 /// Bytes of the number of listed tiles, and of all tiles of a picture.
@@ -58,11 +95,57 @@ fn tile_bytes(size: [u32; 2]) -> u64 {
     4 * (1 + tiles_of(size))
 }
 
+/// The pass that lists what is to be cast.
+#[derive(Debug)]
+pub(crate) struct RepairPass {
+    own_layout: wgpu::BindGroupLayout,
+    count: wgpu::ComputePipeline,
+    choose: wgpu::ComputePipeline,
+    list: wgpu::ComputePipeline,
+}
+
+impl RepairPass {
+    /// Builds the pipelines; what the driver says against them comes with the next [`Gpu::check`].
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] for files that make no module.
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
+        let measures = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let own_layout = layout(device, "repairs", &[storage_buffer(PLAN_BYTES), measures]);
+        let layout = groups.pipeline_layout(device, "repairs", Some(&own_layout));
+        let [count, choose, list] = ["count_ratings", "choose_ratings", "list_repairs"].map(|entry_point| {
+            let files = KernelFiles { root: "stereo/list_repairs", choices: &[], entry_point };
+            build(device, Some(&layout), &files)
+        });
+        Ok(Self { own_layout, count: count?, choose: choose?, list: list? })
+    }
+
+    /// Encodes the listing of what is to be cast of the derived picture.
+    fn dispatch(&self, encoder: &mut wgpu::CommandEncoder, frame: &PairFrame<'_>, repairs: &Repairs) {
+        let measures = repairs.measures.create_view(&wgpu::TextureViewDescriptor::default());
+        let resources = [repairs.plan.as_entire_binding(), wgpu::BindingResource::TextureView(&measures)];
+        let group = bind(&frame.gpu.device, &self.own_layout, &resources);
+        let bindings = frame.bind(Eye::Derived, &PairUniform::zeroed());
+        let [x, y] = merged_workgroups(frame);
+        let mut pass = bindings.begin_pass(encoder, &self.count, Some(&group));
+        pass.dispatch_workgroups(x, y, 1);
+        pass.set_pipeline(&self.choose);
+        pass.dispatch_workgroups(1, 1, 1);
+        pass.set_pipeline(&self.list);
+        pass.dispatch_workgroups(x, y, 1);
+    }
+}
+
 impl Renderer {
-    /// Casts the listed tiles of the derived picture, waits until they are done and adds what that takes to the pair's report.
+    /// Casts what is to be cast of the derived picture, waits until that is done and adds what it takes to the pair's report.
     pub(super) fn repair(
         &mut self,
         frame: &PairFrame<'_>,
+        repairs: &Repairs,
         derived: &Target,
         pair: PairReport,
     ) -> Result<PairReport, PairError> {
@@ -75,8 +158,10 @@ impl Renderer {
         if state_bytes > MOST_STATE_BYTES {
             return Err(PairError::LongRays { samples: most_samples });
         }
+        let pass = self.repair_pass(gpu)?;
+        frame.send(|encoder| pass.dispatch(encoder, frame, repairs));
         let states = self.states(gpu, state_bytes);
-        let target = self.target_group(gpu, derived, [&states, &frame.repairs.tiles]);
+        let target = self.target_group(gpu, derived, [&states, &repairs.tiles]);
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target };
         let variant = prepared.variant.of_listed_tiles();
         let pipeline = self.casts.pipeline(gpu, if is_whole { variant } else { variant.in_parts() })?;
@@ -85,11 +170,33 @@ impl Renderer {
         let mut repair = Duration::ZERO;
         while view.first_sample < most_samples {
             gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&view));
-            let workgroups = Workgroups::Listed(&frame.repairs.groups);
+            let workgroups = Workgroups::Listed(&repairs.plan);
             repair += frame.run(|encoder| cast_pass::dispatch(encoder, &pipeline, &bindings, workgroups))?;
             view.first_sample = view.first_sample.saturating_add(limit);
         }
-        let bytes = pair.bytes + GROUPS_BYTES + tile_bytes(frame.size()) + state_bytes;
+        let bytes = pair.bytes + repairs.bytes() + state_bytes;
         Ok(PairReport { bytes, repair, ..pair })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compose;
+
+    #[test]
+    fn the_pass_builds_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        RepairPass::new(&device, &GroupLayouts::new(&device)).unwrap();
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+
+    #[test]
+    fn constants_are_those_of_the_kernels() {
+        let text = compose("stereo/list_repairs", &[]).unwrap().text;
+        assert!(text.contains(&format!("const RATINGS: u32 = {RATINGS}u;")));
     }
 }

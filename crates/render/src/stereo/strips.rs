@@ -4,12 +4,13 @@
 //! order in which they are made; where strips overlap, their sums are merged, for `over` is associative.
 
 use super::pair::{Eye, PairFrame, PairReport};
-use super::repair::GROUPS_BYTES;
+use super::repair::MEASURE_FORMAT;
 use super::{PairError, Quality};
+use crate::buffers::{check_sizes, storage};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
-use crate::groups::{GroupLayouts, bind, layout, storage_buffer};
-use crate::pacer::{BAND_ROWS, ITERATION_LIMIT};
+use crate::groups::{GroupLayouts, bind, layout, storage_buffer, storage_texture};
+use crate::pacer::{BAND_ROWS, ITERATION_LIMIT, LOCKSTEP_RAYS};
 use crate::readback::read_buffer;
 use crate::uniforms::PairUniform;
 
@@ -33,9 +34,6 @@ const STRETCH: u32 = 16;
 
 /// Loop iterations of a sample at most, besides shading: the largest `ITERATIONS_PER_SAMPLE` of a kernel.
 const MOST_ITERATIONS_PER_SAMPLE: u32 = 5;
-
-/// Rays that software Vulkan casts in lockstep.
-const LOCKSTEP_RAYS: u32 = 8;
 
 /// Bytes of a strip in a band of rows, and of what stands before all: `Strips` of `lib/strip_bands.wgsl`.
 const BAND_BYTES: u64 = 16;
@@ -61,7 +59,6 @@ pub(crate) struct StripPass {
     list: VariantPipelines,
     cast: VariantPipelines,
     merge: VariantPipelines,
-    notes_cuts: bool,
     kept: Option<StripBuffers>,
 }
 
@@ -70,17 +67,19 @@ impl StripPass {
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts, quality: Quality) -> Self {
         let (cuts, merge, entry_point) = match quality {
             Quality::Fast => (CUTS_NONE, "stereo/merge_strips", "merge_strips"),
-            Quality::Repaired => (CUTS_KEPT, "stereo/merge_and_list", "merge_and_list"),
+            Quality::Repaired => (CUTS_KEPT, "stereo/merge_and_measure", "merge_and_measure"),
         };
-        let smallest = [COLOR_BYTES, DEPTH_BYTES, 2 * BAND_BYTES, PROGRESS_BYTES, CUT_BYTES, GROUPS_BYTES];
-        let types = smallest.map(storage_buffer);
+        let mut types =
+            [COLOR_BYTES, DEPTH_BYTES, 2 * BAND_BYTES, PROGRESS_BYTES].map(storage_buffer).to_vec();
+        if quality == Quality::Repaired {
+            types.extend([storage_buffer(CUT_BYTES), storage_texture(MEASURE_FORMAT)]);
+        }
         let strip_layout = layout(device, "strips", &types);
         let layout = groups.pipeline_layout(device, "strips", Some(&strip_layout));
         let merge = VariantPipelines::new(layout.clone(), merge, entry_point, cuts);
         let list = VariantPipelines::new(layout.clone(), "stereo/list_columns", "list_columns", &[]);
         let cast = VariantPipelines::new(layout, "stereo/cast_strips", "cast_strips", cuts);
-        let notes_cuts = quality == Quality::Repaired;
-        Self { strip_layout, list, cast, merge, notes_cuts, kept: None }
+        Self { strip_layout, list, cast, merge, kept: None }
     }
 
     /// Makes a pair.
@@ -94,8 +93,8 @@ impl StripPass {
         let list = self.list.pipeline(frame.gpu, frame.prepared.variant)?;
         let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
         let merge = self.merge.pipeline(frame.gpu, frame.prepared.variant)?;
-        let sizes = self.sizes(frame, &strips);
-        let buffers = self.buffers(frame.gpu, sizes)?;
+        let sizes = sizes(frame, &strips);
+        let buffers = self.buffers(frame.gpu, &sizes)?;
         let group = self.group(frame, &buffers);
         let bindings = frame.bind(Eye::Reference, &strips);
         let [_, bands] = frame.squares(Eye::Reference);
@@ -118,32 +117,17 @@ impl StripPass {
         let bindings = frame.bind(Eye::Derived, &strips);
         let composite = frame.run(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &merge, Some(&group));
-            let [width, height] = frame.squares(Eye::Derived).map(|squares| squares * BAND_ROWS);
-            let [pixels_x, pixels_y] = MERGED_PIXELS;
-            pass.dispatch_workgroups(width.div_ceil(pixels_x), height.div_ceil(pixels_y), 1);
+            let [x, y] = merged_workgroups(frame);
+            pass.dispatch_workgroups(x, y, 1);
         })?;
         self.kept = Some(buffers);
         Ok(PairReport { bytes: sizes.iter().sum(), cast, composite, ..PairReport::default() })
     }
 
-    /// Bytes of the buffers of a pair.
-    fn sizes(&self, frame: &PairFrame<'_>, strips: &PairUniform) -> [u64; 5] {
-        let height = frame.size()[1];
-        let strip_rows = u64::from(height) * u64::from(strips.count);
-        let sums = strip_rows * u64::from(STRIP_COLUMNS + frame.slabs.layers() - 1);
-        let strip_bands = u64::from(height.div_ceil(BAND_ROWS)) * u64::from(strips.count);
-        [
-            sums * COLOR_BYTES,
-            sums * DEPTH_BYTES,
-            (1 + strip_bands) * BAND_BYTES,
-            strip_rows * PROGRESS_BYTES,
-            if self.notes_cuts { sums * CUT_BYTES } else { CUT_BYTES },
-        ]
-    }
-
     /// Room for a pair: that of the last pair if it is large enough. Each strip empties its own sums.
-    fn buffers(&mut self, gpu: &Gpu, sizes: [u64; 5]) -> Result<StripBuffers, GpuError> {
-        let is_enough = |kept: &StripBuffers| kept.sizes.iter().zip(&sizes).all(|(kept, size)| kept >= size);
+    fn buffers(&mut self, gpu: &Gpu, sizes: &[u64]) -> Result<StripBuffers, GpuError> {
+        let is_enough =
+            |kept: &StripBuffers| kept.kept.iter().zip(sizes).all(|(kept, &size)| kept.size() >= size);
         match self.kept.take().filter(is_enough) {
             Some(kept) => Ok(kept),
             None => StripBuffers::new(gpu, sizes),
@@ -151,46 +135,58 @@ impl StripPass {
     }
 
     fn group(&self, frame: &PairFrame<'_>, buffers: &StripBuffers) -> wgpu::BindGroup {
-        let kept = buffers.kept.iter().chain([&frame.repairs.groups]);
-        let resources: Vec<_> = kept.map(wgpu::Buffer::as_entire_binding).collect();
+        let measures = frame
+            .repairs
+            .as_ref()
+            .map(|repairs| repairs.measures.create_view(&wgpu::TextureViewDescriptor::default()));
+        let buffers = buffers.kept.iter().map(wgpu::Buffer::as_entire_binding);
+        let resources: Vec<_> =
+            buffers.chain(measures.as_ref().map(wgpu::BindingResource::TextureView)).collect();
         bind(&frame.gpu.device, &self.strip_layout, &resources)
     }
+}
+
+/// Workgroups along x and y that have the derived picture's tiles.
+pub(super) fn merged_workgroups(frame: &PairFrame<'_>) -> [u32; 2] {
+    let [squares_x, squares_y] = frame.squares(Eye::Derived);
+    let [pixels_x, pixels_y] = MERGED_PIXELS;
+    [(squares_x * BAND_ROWS).div_ceil(pixels_x), (squares_y * BAND_ROWS).div_ceil(pixels_y)]
+}
+
+/// Bytes of the buffers of a pair: colours, depths, strips in bands, progress, and cuts if the pair is to be repaired.
+fn sizes(frame: &PairFrame<'_>, strips: &PairUniform) -> Vec<u64> {
+    let height = frame.size()[1];
+    let strip_rows = u64::from(height) * u64::from(strips.count);
+    let sums = strip_rows * u64::from(STRIP_COLUMNS + frame.slabs.layers() - 1);
+    let strip_bands = u64::from(height.div_ceil(BAND_ROWS)) * u64::from(strips.count);
+    let cuts = frame.repairs.as_ref().map(|_| sums * CUT_BYTES);
+    let always =
+        [sums * COLOR_BYTES, sums * DEPTH_BYTES, (1 + strip_bands) * BAND_BYTES, strip_rows * PROGRESS_BYTES];
+    always.into_iter().chain(cuts).collect()
 }
 
 /// Partial sums of pairs of pictures.
 #[derive(Debug)]
 struct StripBuffers {
-    /// Bytes of `kept`.
-    sizes: [u64; 5],
-    /// Colours, depths, strips in bands, progress and cuts.
-    kept: [wgpu::Buffer; 5],
+    /// Those of [`sizes`].
+    kept: Vec<wgpu::Buffer>,
     /// Where the host reads how many rows of strips are not finished.
     unfinished: wgpu::Buffer,
 }
 
 impl StripBuffers {
-    fn new(gpu: &Gpu, sizes: [u64; 5]) -> Result<Self, GpuError> {
-        let limits = gpu.device.limits();
-        let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        if let Some(bytes) = sizes.into_iter().find(|&bytes| bytes > largest) {
-            return Err(GpuError::Refused {
-                reason: format!("{bytes} bytes of partial sums for stereo; its buffers hold {largest}"),
-            });
-        }
-        let buffer = |label, size, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        let copied_to = wgpu::BufferUsages::COPY_DST;
-        let storage = wgpu::BufferUsages::STORAGE | copied_to | wgpu::BufferUsages::COPY_SRC;
-        let kept = sizes.map(|size| buffer("strips", size, storage));
-        let unfinished = buffer("unfinished strips", 4, copied_to | wgpu::BufferUsages::MAP_READ);
+    fn new(gpu: &Gpu, sizes: &[u64]) -> Result<Self, GpuError> {
+        check_sizes(&gpu.device, "partial sums for stereo", sizes)?;
+        let copied = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let kept = sizes.iter().map(|&size| storage(&gpu.device, "strips", size, copied)).collect();
+        let unfinished = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("unfinished strips"),
+            size: 4,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
         gpu.check()?;
-        Ok(Self { sizes, kept, unfinished })
+        Ok(Self { kept, unfinished })
     }
 
     fn bands(&self) -> &wgpu::Buffer {
@@ -265,7 +261,7 @@ mod tests {
             ("lib/skip", "lib/skip_none"),
             ("lib/volume", "lib/volume_filtered"),
         ];
-        let text = compose("stereo/merge_and_list", &choices).unwrap().text;
+        let text = compose("stereo/merge_and_measure", &choices).unwrap().text;
         let [x, y] = MERGED_PIXELS;
         for line in [
             format!("const TILES = vec2u({}u, {}u);", x / 4, y / 2),

@@ -6,6 +6,7 @@
 
 use super::PairError;
 use super::pair::{Eye, PairFrame, PairReport};
+use crate::buffers::{check_sizes, storage};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{GroupLayouts, bind, layout, storage_buffer};
@@ -83,21 +84,8 @@ struct TileBuffers {
 impl TileBuffers {
     fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, reached: u64) -> Result<Self, GpuError> {
         let [color_bytes, depth_bytes] = PARTIAL_BYTES.map(|bytes| reached * bytes);
-        let limits = gpu.device.limits();
-        let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        if color_bytes > largest {
-            return Err(GpuError::Refused {
-                reason: format!("{color_bytes} bytes of partial sums for stereo; its buffers hold {largest}"),
-            });
-        }
-        let buffer = |label, size| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: wgpu::BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            })
-        };
+        check_sizes(&gpu.device, "partial sums for stereo", &[color_bytes, depth_bytes])?;
+        let buffer = |label, size| storage(&gpu.device, label, size, wgpu::BufferUsages::empty());
         let partials = buffer("partial sums", color_bytes);
         let depths_m = buffer("partial depths", depth_bytes);
         let group = bind(&gpu.device, layout, &[&partials, &depths_m].map(wgpu::Buffer::as_entire_binding));

@@ -49,10 +49,11 @@ impl<'a> Opaque<'a> {
     }
 }
 
-/// Pixels whose opacities differ so much that something is there in one and not in the other.
+/// Pixels where the derived picture has a hole in what is opaque, or something opaque where nothing is.
 fn gaps(derived: &Cast, own: &Cast) -> usize {
     let pixels = derived.image.color.iter().zip(&own.image.color);
-    pixels.filter(|(a, b)| (a[3] - b[3]).abs() > 0.5).count()
+    let is_gap = |derived: f32, own: f32| own > 0.95 && derived < 0.5 || derived > 0.95 && own < 0.05;
+    pixels.filter(|(derived, own)| is_gap(derived[3], own[3])).count()
 }
 
 /// An opaque plate before an opaque ball: what the reference eye does not see behind the plate's edge is missing.
