@@ -5,6 +5,7 @@ use crate::pairs::{dssim, middle, pair, render_pair};
 use crate::scene::*;
 use glam::DVec3;
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::metrics::compare_where;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::Settings;
 use wheatstone_core::stereo::Epipolar;
@@ -28,11 +29,12 @@ struct Opaque<'a> {
 }
 
 impl<'a> Opaque<'a> {
-    fn new(gpu: &'a Gpu, renderer: &'a mut Renderer, volume: &Volume) -> Self {
+    fn new(gpu: &'a Gpu, renderer: &'a mut Renderer, volume: &Volume, samples_per_voxel: f32) -> Self {
         let uploaded = GpuVolume::upload(gpu, volume, &mut |_, _| {}).unwrap();
         let mut settings =
             Settings::new(Window::new(0.0, 255.0).unwrap(), TransferFunction::ramp(0.0, 0.5).unwrap());
         settings.early_termination = Some(0.99);
+        settings.sampling_factor = samples_per_voxel;
         let parameters = CastParameters::new(&settings, &placement(volume));
         let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap();
         Self { gpu, renderer, prepared }
@@ -71,7 +73,7 @@ fn what_the_reference_eye_does_not_see_is_filled() {
     let volume = plate_before_ball();
     let views = pair(&middle([201, 131], DVec3::new(0.1, 0.05, -1.1)), -0.15, f64::INFINITY);
     on_device(|gpu, renderer| {
-        let mut scene = Opaque::new(gpu, renderer, &volume);
+        let mut scene = Opaque::new(gpu, renderer, &volume, 1.0);
         let own = scene.own(&views);
         let [fast, repaired, again] =
             [Quality::Fast, Quality::Repaired, Quality::Repaired].map(|quality| scene.pair(&views, quality));
@@ -90,12 +92,70 @@ fn faces_and_silhouettes_that_the_box_cuts_are_found() {
     let volume = cube(32, |x, y, z| if (x / 4 + y / 4 + z / 4).is_multiple_of(2) { 60 } else { 110 });
     let cases = [(0.4, 0.4), (-0.4, 0.4), (0.4, -0.4), (-0.4, -0.4), (0.6, 0.065), (-0.6, 0.065)];
     on_device(|gpu, renderer| {
-        let mut scene = Opaque::new(gpu, renderer, &volume);
+        let mut scene = Opaque::new(gpu, renderer, &volume, 1.0);
         let of_case = |(x, eye_distance_m): (f64, f64)| {
             let views = pair(&middle([163, 121], DVec3::new(x, 0.1, 1.7)), eye_distance_m, f64::INFINITY);
             let [_, derived] = scene.pair(&views, Quality::Repaired);
             gaps(&derived, &scene.own(&views)[1])
         };
         assert_eq!(cases.map(of_case), [0; 6]);
+    });
+}
+
+/// Grain as fine as the voxels.
+fn grain() -> Volume {
+    let mut state = 1_u32;
+    let values: Vec<u8> = (0..40_usize.pow(3))
+        .map(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            if state >> 31 == 0 { 30 } else { 120 }
+        })
+        .collect();
+    cube(40, |x, y, z| {
+        let is_ball = [x, y, z].map(|i| (i as f64 - 19.5).powi(2)).iter().sum::<f64>() < 18.0 * 18.0;
+        if is_ball { values[(z * 40 + y) * 40 + x] } else { 0 }
+    })
+}
+
+/// Over the windows that the volume is in.
+fn dssim_covered(derived: &Cast, own: &Cast) -> f64 {
+    let [a, b] = [derived, own].map(|cast| cast.image.over_background([0.0; 3]));
+    let is_covered: Vec<bool> = own.image.color.iter().map(|color| color[3] > 0.0).collect();
+    compare_where(&a, &b, &is_covered).unwrap().dssim()
+}
+
+#[test]
+fn as_much_is_cast_as_it_takes() {
+    let smooth = cube(40, |x, y, z| {
+        let radius = [x, y, z].map(|i| (i as f64 - 19.5).powi(2)).iter().sum::<f64>().sqrt();
+        (20.0 - radius).clamp(0.0, 5.0) as u8
+    });
+    on_device(|gpu, renderer| {
+        let views = pair(&middle([220, 160], DVec3::new(0.3, 0.2, 1.2)), 0.065, f64::INFINITY);
+        for (volume, needs_repair) in [(grain(), true), (smooth, false)] {
+            let mut scene = Opaque::new(gpu, renderer, &volume, 1.0);
+            let own = &scene.own(&views)[1];
+            let [fast, repaired] =
+                [Quality::Fast, Quality::Repaired].map(|quality| scene.pair(&views, quality)[1].clone());
+            let [of_fast, of_repaired] = [&fast, &repaired].map(|derived| dssim_covered(derived, own));
+            if needs_repair {
+                assert!(of_fast > 0.02 && of_repaired < 0.01, "{of_fast} {of_repaired}");
+            } else {
+                assert!(of_fast < 0.007, "{of_fast}");
+                assert_eq!(largest_difference(&repaired, &fast), 0.0);
+            }
+        }
+    });
+}
+
+#[test]
+fn long_rays_are_repaired_in_parts() {
+    let volume = plate_before_ball();
+    on_device(|gpu, renderer| {
+        let views = pair(&middle([61, 45], DVec3::new(0.1, 0.05, -1.1)), -0.15, f64::INFINITY);
+        let own = &Opaque::new(gpu, renderer, &volume, 1.0).own(&views)[1];
+        let [_, derived] = Opaque::new(gpu, renderer, &volume, 75.0).pair(&views, Quality::Repaired);
+        assert_eq!(gaps(&derived, own), 0);
+        assert!(dssim(&derived, own) < 0.01, "{}", dssim(&derived, own));
     });
 }
