@@ -153,8 +153,9 @@ fn long_rays_are_repaired_in_parts() {
     let volume = plate_before_ball();
     on_device(|gpu, renderer| {
         let views = pair(&middle([61, 45], DVec3::new(0.1, 0.05, -1.1)), -0.15, f64::INFINITY);
-        let own = &Opaque::new(gpu, renderer, &volume, 1.0).own(&views)[1];
-        let [_, derived] = Opaque::new(gpu, renderer, &volume, 75.0).pair(&views, Quality::Repaired);
+        let mut scene = Opaque::new(gpu, renderer, &volume, 75.0);
+        let own = &scene.own(&views)[1];
+        let [_, derived] = scene.pair(&views, Quality::Repaired);
         assert_eq!(gaps(&derived, own), 0);
         assert!(dssim(&derived, own) < 0.01, "{}", dssim(&derived, own));
     });
