@@ -65,7 +65,7 @@ impl CellCosts {
         (self.measured_cells > 0).then(|| self.measured_sum_s / self.measured_cells as f64)
     }
 
-    /// What the whole view takes, seconds: as the last, scaled by what has been measured of it.
+    /// What the whole view that began last takes, seconds: as the one before, scaled by what has been measured of it.
     pub fn view_s(&self) -> Option<f64> {
         let cells = self.grid.cells() as f64;
         if self.last_s.is_empty() {

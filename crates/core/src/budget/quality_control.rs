@@ -48,7 +48,7 @@ impl QualityControl {
         self.last_moved_s.is_some_and(|last_s| now_s - last_s < self.rest_after_s)
     }
 
-    /// The quality of the view that begins now, after one of quality `last` that took `view_s` seconds of casting, of which
+    /// The quality of the view that begins now, to be asked once per view, after one of quality `last` that took `view_s` seconds of casting, of which
     /// a refresh has room for `refresh_s`. Durations that are not above zero and finite teach nothing.
     pub fn next(&mut self, now_s: f64, last: Quality, view_s: f64, refresh_s: f64) -> Quality {
         let refreshes = view_s / refresh_s;

@@ -5,6 +5,7 @@
 mod oracle;
 mod prediction;
 mod properties;
+mod quality;
 mod refreshes;
 mod simulation;
 mod workload;
