@@ -3,30 +3,42 @@ import package::lib::ray::{Ray, ray_depth_m};
 import package::lib::segment_sink::{SegmentPlace};
 import package::lib::segmented_ray::{SegmentedRay};
 import package::lib::slabs::{slab_at};
-import package::lib::strips::{partial_at, partials};
+import package::lib::strips::{first_reached, partial_at, partials, reach};
+import package::lib::view::{view};
 
 // What rays that end leave out of the derived picture.
 
 // Opacity in front of what is missing from which on it is not missed: less than a tenth of the light.
 const HIDING_ALPHA: f32 = 0.9;
 
-// 1 for each derived column of a strip that a ray would have gone on to, with less than that in front.
-@group(3) @binding(4) var<storage, read_write> partial_cuts: array<u32>;
+// A bit for each derived column of a row of a strip that a ray would have gone on to, with less than that in front.
+@group(3) @binding(4) var<storage, read_write> cuts: array<u32>;
 
-fn empty_cut(at: u32) {
-    partial_cuts[at] = 0u;
+const CUTS_PER_WORD: u32 = 32u;
+
+// The word of a derived column.
+fn word_at(row: u32, strip: u32, column: i32) -> u32 {
+    let words = (reach() + CUTS_PER_WORD - 1u) / CUTS_PER_WORD;
+    return (row * view.pair.count + strip) * words + u32(column - first_reached(strip)) / CUTS_PER_WORD;
 }
 
-fn is_cut_at(at: u32, alpha_in_front: f32) -> bool {
-    return partial_cuts[at] == 1u && alpha_in_front < HIDING_ALPHA;
+fn bit_of(strip: u32, column: i32) -> u32 {
+    return 1u << (u32(column - first_reached(strip)) % CUTS_PER_WORD);
+}
+
+fn empty_cut(row: u32, strip: u32, column: i32) {
+    cuts[word_at(row, strip, column)] = 0u;
+}
+
+fn is_cut_at(row: u32, strip: u32, column: i32, alpha_in_front: f32) -> bool {
+    return (cuts[word_at(row, strip, column)] & bit_of(strip, column)) != 0u && alpha_in_front < HIDING_ALPHA;
 }
 
 // Notes some derived columns that are still open.
 fn note_columns(place: SegmentPlace, first: i32, last: i32) {
     for (var column = first; column <= last; column++) {
-        let at = partial_at(place.row, place.strip, column);
-        if partials[at].a < HIDING_ALPHA {
-            partial_cuts[at] = 1u;
+        if partials[partial_at(place.row, place.strip, column)].a < HIDING_ALPHA {
+            cuts[word_at(place.row, place.strip, column)] |= bit_of(place.strip, column);
         }
     }
 }

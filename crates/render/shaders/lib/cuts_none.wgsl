@@ -4,9 +4,9 @@ import package::lib::segmented_ray::{SegmentedRay};
 
 // What rays that end leave out of the derived picture is not asked for.
 
-fn empty_cut(at: u32) {}
+fn empty_cut(row: u32, strip: u32, column: i32) {}
 
-fn is_cut_at(at: u32, alpha_in_front: f32) -> bool {
+fn is_cut_at(row: u32, strip: u32, column: i32, alpha_in_front: f32) -> bool {
     return false;
 }
 

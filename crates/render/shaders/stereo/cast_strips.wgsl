@@ -32,11 +32,12 @@ const NOTHING_NOTED = vec2i(0x7fffffff, -0x7fffffff);
 
 // Empties the first partial sums of a strip.
 fn empty_partials(row: u32, strip: u32, count: u32) {
-    let first = partial_at(row, strip, first_reached(strip));
-    for (var i = first; i < first + count; i++) {
-        partials[i] = vec4f(0.0);
-        partial_depths_m[i] = 0.0;
-        empty_cut(i);
+    for (var i = 0u; i < count; i++) {
+        let column = first_reached(strip) + i32(i);
+        let at = partial_at(row, strip, column);
+        partials[at] = vec4f(0.0);
+        partial_depths_m[at] = 0.0;
+        empty_cut(row, strip, column);
     }
 }
 

@@ -38,8 +38,11 @@ const MOST_ITERATIONS_PER_SAMPLE: u32 = 5;
 /// Bytes of a strip in a band of rows, and of what stands before all: `Strips` of `lib/strip_bands.wgsl`.
 const BAND_BYTES: u64 = 16;
 
-/// Bytes of whether rays ended that a derived pixel would have needed.
+/// Bytes of whether rays ended that derived pixels would have needed, a bit for each: a word of `lib/cuts_kept.wgsl`.
 const CUT_BYTES: u64 = 4;
+
+/// Bits of it.
+const CUTS_PER_WORD: u64 = 8 * CUT_BYTES;
 
 /// Files of kernels that do not ask for what ended rays leave out.
 const CUTS_NONE: &[(&str, &str)] =
@@ -157,9 +160,10 @@ pub(super) fn merged_workgroups(frame: &PairFrame<'_>) -> [u32; 2] {
 fn sizes(frame: &PairFrame<'_>, strips: &PairUniform) -> Vec<u64> {
     let height = frame.size()[1];
     let strip_rows = u64::from(height) * u64::from(strips.count);
-    let sums = strip_rows * u64::from(STRIP_COLUMNS + frame.slabs.layers() - 1);
+    let reach = u64::from(STRIP_COLUMNS + frame.slabs.layers() - 1);
+    let sums = strip_rows * reach;
     let strip_bands = u64::from(height.div_ceil(BAND_ROWS)) * u64::from(strips.count);
-    let cuts = frame.repairs.as_ref().map(|_| sums * CUT_BYTES);
+    let cuts = frame.repairs.as_ref().map(|_| strip_rows * reach.div_ceil(CUTS_PER_WORD) * CUT_BYTES);
     let always =
         [sums * COLOR_BYTES, sums * DEPTH_BYTES, (1 + strip_bands) * BAND_BYTES, strip_rows * PROGRESS_BYTES];
     always.into_iter().chain(cuts).collect()
