@@ -18,3 +18,4 @@ pub mod stereo;
 pub mod transfer;
 pub mod view;
 pub mod volume;
+pub mod warp;

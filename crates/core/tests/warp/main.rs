@@ -1,0 +1,7 @@
+//! Warps against true casts from the new pose, and against what can be known of them without one.
+
+#![expect(clippy::unwrap_used, reason = "all of this crate is test code")]
+
+mod input;
+mod quad;
+mod scene;

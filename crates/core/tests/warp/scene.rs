@@ -1,0 +1,66 @@
+//! Views, moved eyes, and true casts of small phantoms.
+
+use glam::{DAffine3, DMat3, DVec3};
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::image::Image;
+use wheatstone_core::metrics::compare_where;
+use wheatstone_core::phantom::Phantom;
+use wheatstone_core::reference::{Aids, Caster};
+use wheatstone_core::scene::{Placement, Settings, Shading};
+use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
+use wheatstone_core::view::{Frustum, Orbit, Projection, View};
+use wheatstone_core::volume::Window;
+
+/// Divisible by nothing that bands of rows are made of.
+pub(crate) const SIZE: [u32; 2] = [149, 131];
+
+/// A view of the volume that fills most of the picture.
+pub(crate) fn front() -> View {
+    let frustum = Frustum::from_fov_y(0.9, SIZE).unwrap();
+    Orbit { azimuth_rad: 0.4, elevation_rad: 0.3, distance_m: 1.4 }
+        .view(Projection::Perspective(frustum), SIZE)
+}
+
+/// The view of an eye moved and then turned in place, in its own axes.
+pub(crate) fn moved(view: &View, by_m: DVec3, turn: DMat3) -> View {
+    let world_from_view = view.view_from_world.inverse() * DAffine3::from_mat3_translation(turn, by_m);
+    View { view_from_world: world_from_view.inverse(), ..*view }
+}
+
+/// Opaque from a value upwards, in colours that depend on the value and, by a fixed light, on the surface.
+pub(crate) fn opaque_settings() -> Settings {
+    let point = |at, rgb| ColorPoint { at, rgb };
+    let colors = vec![point(0.0, [0.9, 0.6, 0.2]), point(0.6, [0.3, 0.7, 0.9]), point(1.0, [0.9, 0.9, 0.8])];
+    let alphas = [(0.1, 0.0), (0.4, 1.0)].map(|(at, alpha)| OpacityPoint { at, alpha }).to_vec();
+    let transfer = TransferFunction::new(colors, alphas).unwrap();
+    let mut settings = Settings::new(Window::new(0.0, 255.0).unwrap(), transfer);
+    settings.shading = Shading::Shadow;
+    settings.sampling_factor = 4.0;
+    settings
+}
+
+/// A caster of a phantom that is one metre long and lit by a fixed light: a picture of its own for every view.
+pub(crate) fn caster_of(phantom: Phantom) -> impl Fn(&View) -> Image {
+    let volume = phantom.cube(48).unwrap();
+    let placement = Placement::new(&volume, DAffine3::from_scale(DVec3::splat(1.0 / 48.0)));
+    let parameters = CastParameters::new(&opaque_settings(), &placement);
+    let caster = Caster::new(&volume);
+    move |view| caster.cast(&parameters, &Aids::default(), std::slice::from_ref(view)).remove(0).image
+}
+
+/// Dissimilarity of two pictures over black.
+pub(crate) fn dssim(first: &Image, second: &Image) -> f64 {
+    dssim_where(first, second, &vec![true; first.color.len()])
+}
+
+/// Dissimilarity of two pictures over black, in the windows that touch marked pixels.
+pub(crate) fn dssim_where(first: &Image, second: &Image, marked: &[bool]) -> f64 {
+    let [first, second] = [first, second].map(|image| image.over_background([0.0; 3]));
+    compare_where(&first, &second, marked).unwrap().dssim()
+}
+
+/// Largest difference of any channel.
+pub(crate) fn largest_difference(first: &Image, second: &Image) -> f32 {
+    let channels = |image: &Image| image.color.iter().flatten().copied().collect::<Vec<_>>();
+    channels(first).iter().zip(channels(second)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
