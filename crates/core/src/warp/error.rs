@@ -44,6 +44,9 @@ pub enum WarpError {
         /// Pixels by width and height.
         pixels: usize,
     },
+    /// A setting that is no distance.
+    #[error("{0} {1} px: must be finite and not negative")]
+    Distance(&'static str, f64),
 }
 
 impl WarpError {
@@ -59,5 +62,14 @@ impl WarpError {
             return Err(Self::Pixels { colors, depths, pixels });
         }
         Ok(())
+    }
+
+    /// Refuses what is no distance.
+    pub(super) fn unless_distance(what: &'static str, distance_px: f64) -> Result<(), Self> {
+        if distance_px >= 0.0 && distance_px.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::Distance(what, distance_px))
+        }
     }
 }

@@ -5,12 +5,12 @@ use glam::{DAffine3, DVec3};
 use proptest::prelude::*;
 use wheatstone_core::image::Image;
 use wheatstone_core::view::{Frustum, OrthographicBox, Projection, View};
-use wheatstone_core::warp::{WarpError, quad};
+use wheatstone_core::warp::{GridSettings, WarpError, grid, quad};
 
 type Warp = fn(&View, &Image, &View) -> Result<Image, WarpError>;
 
 /// Every warp at its default.
-const WARPS: [Warp; 1] = [quad];
+const WARPS: [Warp; 2] = [quad, |shown, image, wanted| grid(shown, image, wanted, GridSettings::default())];
 
 fn blank() -> Image {
     Image::transparent(SIZE[0], SIZE[1])
@@ -65,6 +65,19 @@ fn poses_and_windows_without_meaning_are_refused() {
     ] {
         let found = errors(view);
         assert!(found.iter().all(|error| matches!(error, WarpError::View(_))), "{found:?}");
+    }
+}
+
+#[test]
+fn settings_that_are_no_distances_are_refused() {
+    for distance_px in [-1.0, f64::NAN, f64::INFINITY] {
+        let plain = GridSettings::default();
+        for settings in
+            [GridSettings { tear_px: distance_px, ..plain }, GridSettings { close_px: distance_px, ..plain }]
+        {
+            let answer = grid(&front(), &blank(), &front(), settings);
+            assert!(matches!(answer, Err(WarpError::Distance(..))), "{settings:?}");
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "all of this crate is test code")]
 
+mod grid;
 mod input;
 mod quad;
 mod scene;

@@ -8,7 +8,7 @@ use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Aids, Caster};
 use wheatstone_core::scene::{Placement, Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
-use wheatstone_core::view::{Frustum, Orbit, Projection, View};
+use wheatstone_core::view::{Frustum, Orbit, Projection, RayField, View};
 use wheatstone_core::volume::Window;
 
 /// Divisible by nothing that bands of rows are made of.
@@ -46,6 +46,41 @@ pub(crate) fn caster_of(phantom: Phantom) -> impl Fn(&View) -> Image {
     let parameters = CastParameters::new(&opaque_settings(), &placement);
     let caster = Caster::new(&volume);
     move |view| caster.cast(&parameters, &Aids::default(), std::slice::from_ref(view)).remove(0).image
+}
+
+/// A flat, opaque rectangle that faces world +Z.
+pub(crate) struct Plate {
+    /// World z, metres.
+    pub(crate) z_m: f64,
+    /// World x from and to, metres; it is endless along y.
+    pub(crate) x_m: [f64; 2],
+    /// By world x and y in metres.
+    pub(crate) rgb: fn(f64, f64) -> [f32; 3],
+}
+
+/// What a view sees of plates, one ray through each pixel's centre.
+pub(crate) fn painted(view: &View, plates: &[Plate]) -> Image {
+    let [width, height] = view.size;
+    let rays = RayField::new(view, DAffine3::IDENTITY);
+    let mut image = Image::transparent(width, height);
+    for (index, (color, depth_m)) in image.color.iter_mut().zip(&mut image.depth_m).enumerate() {
+        let (x, y) = (index as u32 % width, index as u32 / width);
+        let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        for plate in plates {
+            let at_m = (plate.z_m - origin.z) / direction.z;
+            let hit = origin + at_m * direction;
+            if at_m > 0.0 && at_m < f64::from(*depth_m) && (plate.x_m[0]..plate.x_m[1]).contains(&hit.x) {
+                let [r, g, b] = (plate.rgb)(hit.x, hit.y);
+                (*color, *depth_m) = ([r, g, b, 1.0], at_m as f32);
+            }
+        }
+    }
+    image
+}
+
+/// Smooth waves of colour.
+pub(crate) fn waves(x: f64, y: f64) -> [f32; 3] {
+    [(20.0 * x).sin(), (17.0 * y).sin(), (12.0 * (x + y)).cos()].map(|wave| (0.5 + 0.4 * wave) as f32)
 }
 
 /// Dissimilarity of two pictures over black.
