@@ -7,6 +7,9 @@ use glam::{DVec2, DVec4, Vec4};
 use rayon::prelude::*;
 use std::ops::{Add, Div};
 
+/// Side of a block of cells.
+const BLOCK: usize = 16;
+
 /// The cells between the pixels of a picture and a ring of transparent pixels around it.
 pub(super) struct Cells<'a> {
     map: &'a PixelMap,
@@ -46,18 +49,22 @@ impl<'a> Cells<'a> {
         cells
     }
 
-    /// Rows of cells.
-    pub(super) fn rows(&self) -> usize {
-        self.size[1]
+    /// Squares of cells that are drawn together.
+    pub(super) fn blocks(&self) -> usize {
+        self.size.map(|cells| cells.div_ceil(BLOCK)).iter().product()
     }
 
-    /// What is to be drawn of a row of cells.
-    pub(super) fn for_each_sheet_of_row(&self, row: usize, mut draw: impl FnMut(&Sheet)) {
-        for column in 0..self.size[0] {
-            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| (column + x, row + y));
-            let colors = corners.map(|(x, y)| self.color(x, y));
-            if colors != [DVec4::ZERO; 4] {
-                self.for_each_sheet(corners, colors, &mut draw);
+    /// What is to be drawn of a block of cells.
+    pub(super) fn for_each_sheet_of_block(&self, block: usize, mut draw: impl FnMut(&Sheet)) {
+        let across = self.size[0].div_ceil(BLOCK);
+        let (left, top) = (block % across * BLOCK, block / across * BLOCK);
+        for row in top..(top + BLOCK).min(self.size[1]) {
+            for column in left..(left + BLOCK).min(self.size[0]) {
+                let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| (column + x, row + y));
+                let colors = corners.map(|(x, y)| self.color(x, y));
+                if colors != [DVec4::ZERO; 4] {
+                    self.for_each_sheet(corners, colors, &mut draw);
+                }
             }
         }
     }

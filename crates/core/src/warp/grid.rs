@@ -51,7 +51,7 @@ pub fn grid(shown: &View, image: &Image, wanted: &View, settings: GridSettings) 
     WarpError::unless_distance("width of holes that are closed", close_px)?;
     let cells = Cells::new(&map, image, settings, wanted.projection.depth_range_m().0);
     let extents: Vec<(f64, f64)> =
-        (0..cells.rows()).into_par_iter().map(|row| extent_y(&cells, row)).collect();
+        (0..cells.blocks()).into_par_iter().map(|block| extent_y(&cells, block)).collect();
     let [width, height] = wanted.size;
     let mut warped = Image::transparent(width, height);
     let band_pixels = width as usize * BAND_ROWS;
@@ -62,9 +62,9 @@ pub fn grid(shown: &View, image: &Image, wanted: &View, settings: GridSettings) 
             let first_row = index * BAND_ROWS;
             let end = (first_row + BAND_ROWS) as f64;
             let mut band = Band { first_row, width: width as usize, color, depth_m, rank };
-            for (row, &(top, bottom)) in extents.iter().enumerate() {
+            for (block, &(top, bottom)) in extents.iter().enumerate() {
                 if top < end && bottom > first_row as f64 {
-                    cells.for_each_sheet_of_row(row, |sheet| sheet.draw(&mut band));
+                    cells.for_each_sheet_of_block(block, |sheet| sheet.draw(&mut band));
                 }
             }
         },
@@ -72,10 +72,10 @@ pub fn grid(shown: &View, image: &Image, wanted: &View, settings: GridSettings) 
     Ok(warped)
 }
 
-/// Lowest and highest pixel position along y of all that is drawn of a row of cells.
-fn extent_y(cells: &Cells<'_>, row: usize) -> (f64, f64) {
+/// Lowest and highest pixel position along y of all that is drawn of a block of cells.
+fn extent_y(cells: &Cells<'_>, block: usize) -> (f64, f64) {
     let mut extent = (f64::INFINITY, f64::NEG_INFINITY);
-    cells.for_each_sheet_of_row(row, |sheet| {
+    cells.for_each_sheet_of_block(block, |sheet| {
         let (top, bottom) = sheet.extent_y();
         extent = (extent.0.min(top), extent.1.max(bottom));
     });
