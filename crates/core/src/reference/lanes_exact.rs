@@ -1,6 +1,8 @@
 //! One f64 lane: the truth.
 
+use super::accumulate::Pixels;
 use super::lanes::{Lanes, MOST_LANES, Mask};
+use super::renderer::Reads;
 use super::volume::Stored;
 use crate::transfer::LutEntry;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
@@ -18,6 +20,18 @@ impl From<f64> for Exact {
 impl From<Exact> for f64 {
     fn from(lane: Exact) -> Self {
         lane.0
+    }
+}
+
+impl Pixels<Exact> {
+    /// Premultiplied colour.
+    pub(super) fn color(&self) -> [f32; 4] {
+        [self.rgb.x, self.rgb.y, self.rgb.z, self.alpha].map(|channel| channel.0 as f32)
+    }
+
+    /// What its ray has read.
+    pub(super) fn reads(&self) -> Reads {
+        Reads { samples: self.taken.samples.0 as u32, map_reads: self.taken.map_reads.0 as u32 }
     }
 }
 

@@ -17,6 +17,7 @@ mod gradient_map;
 mod lanes;
 mod lanes_exact;
 mod lanes_wide;
+mod layers;
 mod lut;
 mod magnitude;
 mod oracle;

@@ -47,6 +47,17 @@ pub enum WarpError {
     /// A setting that is no distance.
     #[error("{0} {1} px: must be finite and not negative")]
     Distance(&'static str, f64),
+    /// No steps along a novel ray, or too many.
+    #[error("{steps} steps along a ray: must be 1 to {most}")]
+    Steps {
+        /// Steps asked for.
+        steps: u32,
+        /// Most that are taken.
+        most: u32,
+    },
+    /// A step that leads nowhere.
+    #[error("steps of {0} pixels: must be above 0 and finite")]
+    StepLength(f64),
 }
 
 impl WarpError {

@@ -2,20 +2,29 @@
 //!
 //! After Buchacher's thesis (VR §5.3). [`quad`] moves the picture as if all of it were infinitely far away: exact for a turn,
 //! without parallax. [`grid`] moves each pixel by the depth of its first hit, without rubber sheets across edges of depth.
-//! Pictures keep premultiplied colours throughout; what was never seen stays transparent.
+//! [`volumetric`] casts novel rays through the layers of emission and absorption that a cast leaves ([`EmissionAbsorption`]):
+//! what is translucent keeps its depths. Pictures keep premultiplied colours throughout; what was never seen stays transparent.
 //!
 //! This is the truth that warps on the GPU are tested against: f64, the rows of the wanted picture in parallel, each made
 //! in the same order by any number of threads. All geometry is in a [`PixelMap`], a matrix and a vector that a shader takes as
 //! uniforms.
 
 mod cells;
+mod column;
+mod depth_tiles;
+mod emission_absorption;
 mod error;
 mod grid;
+mod medium;
 mod pixel_map;
 mod quad;
 mod sheet;
+mod volumetric;
 
+pub use emission_absorption::{EmissionAbsorption, Layer, LayerError, LayerThresholds, MOST_LAYERS};
 pub use error::WarpError;
 pub use grid::{GridSettings, grid};
+pub use medium::Medium;
 pub use pixel_map::{Landing, PixelMap};
 pub use quad::quad;
+pub use volumetric::{VolumetricSettings, volumetric};

@@ -4,5 +4,8 @@
 
 mod grid;
 mod input;
+mod layers;
+mod medium;
 mod quad;
 mod scene;
+mod volumetric;

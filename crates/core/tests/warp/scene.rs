@@ -5,11 +5,12 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::Image;
 use wheatstone_core::metrics::compare_where;
 use wheatstone_core::phantom::Phantom;
-use wheatstone_core::reference::{Aids, Caster};
+use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::{Placement, Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::{Frustum, Orbit, Projection, RayField, View};
 use wheatstone_core::volume::Window;
+use wheatstone_core::warp::{EmissionAbsorption, LayerThresholds};
 
 /// Divisible by nothing that bands of rows are made of.
 pub(crate) const SIZE: [u32; 2] = [149, 131];
@@ -98,4 +99,40 @@ pub(crate) fn dssim_where(first: &Image, second: &Image, marked: &[bool]) -> f64
 pub(crate) fn largest_difference(first: &Image, second: &Image) -> f32 {
     let channels = |image: &Image| image.color.iter().flatten().copied().collect::<Vec<_>>();
     channels(first).iter().zip(channels(second)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// Faint and unlit, in colours that depend on the value.
+pub(crate) fn soft_settings() -> Settings {
+    let alphas =
+        [(0.05, 0.0), (0.3, 0.03), (1.0, 0.1)].map(|(at, alpha)| OpacityPoint { at, alpha }).to_vec();
+    let transfer = TransferFunction::new(opaque_settings().transfer.color_points().to_vec(), alphas).unwrap();
+    Settings { shading: Shading::None, transfer, early_termination: None, ..opaque_settings() }
+}
+
+/// Small phantoms, each translucent and opaque.
+pub(crate) fn translucent_and_opaque() -> Vec<(Phantom, Settings)> {
+    let of = |phantom| [soft_settings(), opaque_settings()].map(|settings| (phantom, settings));
+    [Phantom::SheppLogan, Phantom::Present].into_iter().flat_map(of).collect()
+}
+
+/// A phantom, one metre long, with what its casts need.
+pub(crate) struct Scene {
+    pub(crate) caster: Caster,
+    pub(crate) parameters: CastParameters,
+}
+
+impl Scene {
+    pub(crate) fn new(phantom: Phantom, settings: &Settings) -> Self {
+        let volume = phantom.cube(48).unwrap();
+        let placement = Placement::new(&volume, DAffine3::from_scale(DVec3::splat(1.0 / 48.0)));
+        Self { caster: Caster::new(&volume), parameters: CastParameters::new(settings, &placement) }
+    }
+
+    pub(crate) fn cast(&self, view: &View) -> Image {
+        self.caster.cast(&self.parameters, &Aids::default(), std::slice::from_ref(view)).remove(0).image
+    }
+
+    pub(crate) fn layers(&self, view: &View, thresholds: &LayerThresholds) -> (Cast, EmissionAbsorption) {
+        self.caster.cast_emission_absorption(&self.parameters, &Aids::default(), view, thresholds).unwrap()
+    }
 }

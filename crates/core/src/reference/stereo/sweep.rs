@@ -7,7 +7,6 @@ use crate::cast::CastParameters;
 use crate::image::Image;
 use crate::reference::accumulate::Pixels;
 use crate::reference::context::Context;
-use crate::reference::lanes::Lanes;
 use crate::reference::lanes_exact::Exact;
 use crate::reference::ray::{PixelRay, Ray};
 use crate::reference::renderer::{Cast, Reads};
@@ -109,7 +108,7 @@ impl<'a> Sweep<'a> {
                 continue;
             }
             let pixel = derived_row.cast(context, self, &Ray::new((), dims, &[ray]), column);
-            let reads = reads_of(&pixel);
+            let reads = pixel.reads();
             let cast = if is_beyond { &mut derived } else { &mut reference };
             cast.samples += u64::from(reads.samples);
             cast.map_reads += u64::from(reads.map_reads);
@@ -133,16 +132,8 @@ fn transparent(width: u32, height: u32) -> Cast {
 }
 
 fn set_pixel(image: &mut Image, at: usize, pixel: &Pixels<Exact>) {
-    let [r, g, b, alpha, depth_m] =
-        [pixel.rgb.x, pixel.rgb.y, pixel.rgb.z, pixel.alpha, pixel.depth_m].map(|lane| lane.to_array()[0]);
-    image.color[at] = [r, g, b, alpha];
-    image.depth_m[at] = depth_m;
-}
-
-fn reads_of(pixel: &Pixels<Exact>) -> Reads {
-    let [samples, map_reads] =
-        [pixel.taken.samples, pixel.taken.map_reads].map(|lane| lane.to_array()[0] as u32);
-    Reads { samples, map_reads }
+    image.color[at] = pixel.color();
+    image.depth_m[at] = f64::from(pixel.depth_m) as f32;
 }
 
 /// A picture of rows, from the top.
