@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec2, DVec4, Vec4};
 use rayon::prelude::*;
 
 /// How steep a surface may be, in depth per width: beyond it neighbouring columns show different surfaces.
-const STEEPEST: f64 = 8.0;
+const STEEPEST: f64 = 32.0;
 
 /// Least that is taken to pass layers.
 const LEAST_THROUGH: f64 = 1.0 - SATURATED_ALPHA as f64;
