@@ -30,6 +30,15 @@ impl Stratum {
     pub(super) fn is_clear(&self) -> bool {
         self.absorption_per_m <= 0.0
     }
+
+    /// The same, or, if it is clear, nothing where another one is.
+    pub(super) fn or_clear_at(&self, other: &Self) -> Self {
+        if self.is_clear() {
+            Self { start_m: other.start_m, end_m: other.end_m, ..Self::default() }
+        } else {
+            *self
+        }
+    }
 }
 
 /// The layers at a position of the picture, from the front.

@@ -232,6 +232,17 @@ struct Sheet {
     absorption_per_m: f64,
 }
 
+impl Sheet {
+    fn between(ends: [&Stratum; 2]) -> Self {
+        Self {
+            starts_m: ends.map(|stratum| stratum.start_m),
+            ends_m: ends.map(|stratum| stratum.end_m),
+            color: ends[0].color + ends[1].color,
+            absorption_per_m: 0.5 * (ends[0].absorption_per_m + ends[1].absorption_per_m),
+        }
+    }
+}
+
 impl Segment<'_> {
     /// Composites the layers that the step crosses.
     fn add_to(&self, light: &mut Light, metres_per_depth: f64, columns: &Columns<'_>) {
@@ -243,28 +254,15 @@ impl Segment<'_> {
             if here.is_clear() && there.is_clear() {
                 continue;
             }
-            let lone = |stratum: Stratum, absorption_per_m| Sheet {
-                starts_m: [stratum.start_m; 2],
-                ends_m: [stratum.end_m; 2],
-                color: stratum.color,
-                absorption_per_m,
+            let (here, there) = (here.or_clear_at(&there), there.or_clear_at(&here));
+            let mut add = |ends: [&Stratum; 2], part| {
+                self.add_sheet(light, metres_per_depth, &Sheet::between(ends), part);
             };
-            let mut add = |sheet, part| self.add_sheet(light, metres_per_depth, &sheet, part);
-            if there.is_clear() {
-                add(lone(here, 0.5 * here.absorption_per_m), 0.0..1.0);
-            } else if here.is_clear() {
-                add(lone(there, 0.5 * there.absorption_per_m), 0.0..1.0);
-            } else if columns.agree(&here, &there, self.step_px) {
-                let sheet = Sheet {
-                    starts_m: [here.start_m, there.start_m],
-                    ends_m: [here.end_m, there.end_m],
-                    color: here.color + there.color,
-                    absorption_per_m: 0.5 * (here.absorption_per_m + there.absorption_per_m),
-                };
-                add(sheet, 0.0..1.0);
+            if columns.agree(&here, &there, self.step_px) {
+                add([&here, &there], 0.0..1.0);
             } else {
-                add(lone(here, here.absorption_per_m), 0.0..0.5);
-                add(lone(there, there.absorption_per_m), 0.5..1.0);
+                add([&here; 2], 0.0..0.5);
+                add([&there; 2], 0.5..1.0);
             }
         }
     }
