@@ -83,6 +83,13 @@ pub struct Prepared {
     pub(crate) volume: wgpu::BindGroup,
 }
 
+impl Prepared {
+    /// What is cast.
+    pub fn parameters(&self) -> &CastParameters {
+        &self.parameters
+    }
+}
+
 impl Renderer {
     /// Makes what is kept for a device.
     ///

@@ -186,6 +186,7 @@ impl GpuEngine {
         let [left, right, ..] = &mut self.targets[..] else { unreachable!() };
         let targets = pairing.reference.and_other([left, right]);
         let prepared = &self.scenes[shot.0].prepared;
+        check_depths(&epipolar, prepared)?;
         let start = Instant::now();
         let report = self.renderer.render_pair(&self.gpu, prepared, &epipolar, pairing.method(), targets)?;
         Ok(PairCast { time: start.elapsed(), report })
@@ -243,5 +244,18 @@ impl GpuEngine {
             baseline.map(&self.gpu, parameters)?;
             self.gpu.wait()
         })
+    }
+}
+
+/// Checks that no part of the volume is too near for a pair of one cast.
+fn check_depths(epipolar: &Epipolar, prepared: &Prepared) -> Result<(), NoPair> {
+    let depths_m = epipolar.depths_m(&prepared.parameters().visible_corners_world());
+    let least_m = epipolar.least_depth_m();
+    match depths_m {
+        Some(depths_m) if depths_m.start < least_m => Err(NoPair::Refused(format!(
+            "the volume is as near as {:.3} m, rays of both eyes are alike from {least_m:.3} m on",
+            depths_m.start
+        ))),
+        _ => Ok(()),
     }
 }

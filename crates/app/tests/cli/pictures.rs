@@ -286,6 +286,9 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
     let noted = render("mip.png", &[&mip[..], &["--stereo-method", "strips"]].concat());
     assert!(noted.stderr.contains("note: strips cannot make this pair"), "{}", noted.stderr);
     assert_eq!(noted.json()["stereo_method"], "two-pass");
+    let inside = render("inside.png", &["--stereo-method", "strips", "--distance", "0.1"]);
+    assert!(inside.stderr.contains("rays of both eyes are alike from 0.130 m on"), "{}", inside.stderr);
+    assert_eq!(inside.json()["stereo_method"], "two-pass");
 }
 
 #[test]

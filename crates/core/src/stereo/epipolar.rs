@@ -97,6 +97,17 @@ impl Epipolar {
         self.k
     }
 
+    /// Distance of the eyes, metres.
+    pub fn eye_distance_m(&self) -> f64 {
+        self.k / self.pixels_per_tangent
+    }
+
+    /// Depth from which on rays of both eyes through a sample are alike enough for one to stand for the other, metres: twice
+    /// the eyes' distance, where they are half a radian apart. Nearer ones cross slabs on ways of other lengths.
+    pub fn least_depth_m(&self) -> f64 {
+        2.0 * self.eye_distance_m()
+    }
+
     /// Shift of what is infinitely far away, pixels: k over the depth at which the eyes converge.
     pub fn c(&self) -> f64 {
         self.c

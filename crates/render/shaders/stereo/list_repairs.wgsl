@@ -66,7 +66,8 @@ fn rating_of(place: Place) -> u32 {
     }
     let means = sums / f32(9u * TILE.x * TILE.y);
     let variance = max(means.y - means.x * means.x, 0.0);
-    let dssim = DSSIM_OF_CONTRAST * pow(measure.z / (variance + LEAST_VARIANCE), DSSIM_POWER);
+    let change = measure.z / (variance + LEAST_VARIANCE);
+    let dssim = DSSIM_OF_CONTRAST * pow(change, DSSIM_POWER) * (1.0 + change);
     let rating = min(u32(dssim / DSSIM_PER_RATING), RATINGS - 2u);
     let holds = u32(measure.w);
     return select(select(RATINGS, rating, holds == 1u), RATINGS - 1u, holds == 2u);
