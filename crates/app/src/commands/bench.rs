@@ -1,6 +1,6 @@
 //! `bench`: what its commands share.
 
-use super::{bench_cast, bench_skip, bench_stereo};
+use super::{bench_cast, bench_skip, bench_stereo, bench_warp};
 use crate::backend::Engine;
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -22,7 +22,8 @@ use wheatstone_io::{Loaded, read_volume};
 #[command(after_help = "Examples:\n  \
     wheatstone bench cast bonsai.nii.gz --up A --json\n  \
     wheatstone bench skip beetle:256 --frames 6 --plot plots\n  \
-    wheatstone bench stereo bonsai.nii.gz box:256 --up A --plot plots")]
+    wheatstone bench stereo bonsai.nii.gz box:256 --up A --plot plots\n  \
+    wheatstone bench warp bonsai.nii.gz --up A --plot plots")]
 pub(crate) struct BenchArgs {
     #[command(subcommand)]
     what: BenchCommand,
@@ -33,6 +34,7 @@ enum BenchCommand {
     Cast(bench_cast::CastArgs),
     Skip(bench_skip::SkipBenchArgs),
     Stereo(Box<bench_stereo::StereoBenchArgs>),
+    Warp(Box<bench_warp::WarpBenchArgs>),
 }
 
 /// Runs the command.
@@ -41,6 +43,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         BenchCommand::Cast(args) => bench_cast::run(args),
         BenchCommand::Skip(args) => bench_skip::run(args),
         BenchCommand::Stereo(args) => bench_stereo::run(args),
+        BenchCommand::Warp(args) => bench_warp::run(args),
     }
 }
 

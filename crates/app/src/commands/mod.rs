@@ -4,6 +4,7 @@ pub(crate) mod bench;
 mod bench_cast;
 mod bench_skip;
 mod bench_stereo;
+mod bench_warp;
 pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod doctor;

@@ -111,6 +111,7 @@ fn bad_files_are_refused() {
             &["bench", "cast", file],
             &["bench", "skip", file],
             &["bench", "stereo", file],
+            &["bench", "warp", file],
         ] {
             let run = bench.run(args);
             assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);
@@ -151,6 +152,11 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         &["bench", "stereo", "box:8", "--methods", "two-pass"],
         &["bench", "stereo", "box:8", "--methods", "tiles", "--qualities", "repaired"],
         &["bench", "stereo"],
+        &["bench", "warp"],
+        &["bench", "warp", "box:8", "--warp-ms", "12"],
+        &["bench", "warp", "box:8", "--warps", "sheet"],
+        &["bench", "warp", "box:8", "--render-ms", "0"],
+        &["bench", "warp", "box:8", "--plot", "file"],
         &["bench", "skip", "beetle:0"],
         &["bench", "skip", "beetle:8", "--block-sizes", "4,99"],
     ] {

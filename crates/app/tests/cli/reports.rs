@@ -286,6 +286,35 @@ fn bench_skip_lists_every_structure_and_draws_charts() {
 }
 
 #[test]
+fn bench_warp_traces_every_warp() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let small = ["bench", "warp", "sphere.nrrd", "--size", "96x96", "--tf", "ramp:0.2..1", "--json"];
+    let folders = ["--motions", "rotation,translation", "--plot", "plots", "--error-pictures", "errors"];
+    let run = bench.run(&[&small[..], &folders].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let json = run.json();
+    assert_eq!(keys(&json), ["device", "refresh_hz", "render_ms", "rows", "size"]);
+    let rows = json["rows"].as_array().unwrap();
+    let row_keys =
+        ["drop_worst", "dssim_mean", "dssim_worst", "missed", "motion", "trace", "volume", "warp", "warp_ms"];
+    assert!(rows.iter().all(|row| keys(row) == row_keys && row["trace"].as_array().unwrap().len() > 90));
+    let mean = |motion: &str, warp: &str| {
+        let row = rows.iter().find(|row| row["motion"] == motion && row["warp"] == warp).unwrap();
+        row["dssim_mean"].as_f64().unwrap()
+    };
+    assert!(mean("rotation", "quad") < 0.5 * mean("rotation", "none"));
+    assert!(mean("translation", "grid") < 0.5 * mean("translation", "quad"));
+    assert!(mean("translation", "volumetric") < 0.5 * mean("translation", "none"));
+    let again = bench.run(&[&small[..], &folders].concat()).json();
+    assert_eq!(again["rows"][3]["trace"], rows[3]["trace"]);
+    assert_eq!(std::fs::read_dir(bench.path("plots")).unwrap().count(), 2);
+    assert_eq!(std::fs::read_dir(bench.path("errors")).unwrap().count(), 24);
+}
+
+#[test]
 fn bench_stereo_lists_every_way_and_draws_charts() {
     if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
         return;
@@ -438,6 +467,7 @@ fn every_command_has_help_with_an_example() {
         &["bench", "cast"],
         &["bench", "skip"],
         &["bench", "stereo"],
+        &["bench", "warp"],
     ] {
         let run = bench.run(&[command, &["--help"]].concat());
         assert_eq!(run.code, 0);
@@ -460,6 +490,7 @@ fn every_flag_is_in_the_reference() {
         &["bench", "cast"],
         &["bench", "skip"],
         &["bench", "stereo"],
+        &["bench", "warp"],
     ] {
         let help = bench.run(&[command, &["--help"]].concat()).stdout;
         let flags = help

@@ -1,0 +1,217 @@
+//! `bench warp`: how far what a display shows is from what its eyes should see, by the protocol of VR §6.2.
+
+mod charts;
+mod motion;
+mod pictures;
+mod session;
+mod source;
+mod timeline;
+mod trace;
+mod warp;
+
+use super::bench::{Device, Opened, default_transfer, open};
+use crate::backend::Engine;
+use crate::camera::Up;
+use crate::failure::Failure;
+use crate::output::{make_folder, print, print_json};
+use crate::progress::Bar;
+use crate::skipping::{SkipArgs, SkipName};
+use crate::spec;
+use crate::transfer_spec::{self, TransferSpec};
+use clap::{Args, ValueEnum};
+use motion::{Extent, MotionName};
+use serde_json::json;
+use session::Session;
+use source::{Camera, Layered};
+use std::path::PathBuf;
+use timeline::{Pace, refreshes};
+use trace::Trace;
+use warp::WarpName;
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::head::{Display, Pose};
+use wheatstone_core::reference::Caster;
+use wheatstone_core::scene::{Placement, Settings, Shading};
+use wheatstone_core::view::{Frustum, Orbit, Projection, world_from_patient};
+use wheatstone_core::volume::StorageKind;
+use wheatstone_render::Gpu;
+
+/// Radius of the sphere around a cube of 1 m.
+const RADIUS_M: f64 = 0.866;
+
+/// Error of what a head-mounted display shows while the head moves, with and without warping.
+///
+/// Simulated time: a head turns about its neck, moves sideways, or does both, eased by a cosine, within one second. Pictures are cast
+/// a few cells per refresh, as many as fit in what is left of it by measured costs that scatter by 30 %; at each refresh
+/// the newest complete picture is warped to where the eyes are and compared with a true render from there. Results are the same on
+/// every machine but for the times of warps.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    wheatstone bench warp bonsai.nii.gz --up A --plot plots\n  \
+    wheatstone bench warp shepp-logan:64 --size 256x256 --motions translation --warps none,grid,volumetric --json\n  \
+    wheatstone bench warp mni152.nii.gz --render-ms 30 --error-pictures errors")]
+pub(crate) struct WarpBenchArgs {
+    /// Volume files, or phantoms with their size.
+    #[arg(value_name = "FILE|PHANTOM:N", required = true)]
+    volumes: Vec<String>,
+
+    /// Transfer function [default: the (first) ramp of the benchmark volume of the name, else ramp:0..1].
+    #[arg(long, value_name = "SPEC", value_parser = transfer_spec::parse)]
+    tf: Option<TransferSpec>,
+
+    /// Shading.
+    #[arg(long, value_name = "SHADING", default_value = "none", value_parser = spec::shading)]
+    shading: Shading,
+
+    /// Width and height of the eye's picture, pixels.
+    #[arg(long, value_name = "WxH", default_value = "768x768", value_parser = spec::picture_size)]
+    size: [u32; 2],
+
+    /// Vertical field of view, degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 90.0, value_parser = spec::within(1.0..=170.0), allow_negative_numbers = true)]
+    fov_deg: f64,
+
+    /// Distance from the eye, in the middle of the motion, to the sphere around a cube of 1 m, metres.
+    #[arg(long, value_name = "M", default_value_t = 0.6, value_parser = spec::within(0.0..=1000.0), allow_negative_numbers = true)]
+    distance: f64,
+
+    /// How the head moves.
+    #[arg(
+        long,
+        value_name = "MOTIONS",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "rotation,translation,both"
+    )]
+    motions: Vec<MotionName>,
+
+    /// What is done with old pictures.
+    #[arg(long, value_name = "WARPS", value_enum, value_delimiter = ',')]
+    warps: Vec<WarpName>,
+
+    /// Turn of the head within the second, degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 30.0, value_parser = spec::within(-180.0..=180.0), allow_negative_numbers = true)]
+    turn_deg: f64,
+
+    /// Way of the head sideways within the second, metres.
+    #[arg(long, value_name = "M", default_value_t = 0.2, value_parser = spec::within(-10.0..=10.0), allow_negative_numbers = true)]
+    sideways: f64,
+
+    /// Refreshes of the display per second.
+    #[arg(long, value_name = "HZ", default_value_t = 90.0, value_parser = spec::within(1.0..=1000.0), allow_negative_numbers = true)]
+    refresh_hz: f64,
+
+    /// Time that casting a picture takes, milliseconds.
+    #[arg(long, value_name = "MS", default_value_t = 45.0, value_parser = spec::within(0.1..=10_000.0), allow_negative_numbers = true)]
+    render_ms: f64,
+
+    /// Time of each refresh that is kept for the warp, milliseconds; less than a refresh.
+    #[arg(long, value_name = "MS", default_value_t = 2.0, value_parser = spec::within(0.0..=1000.0), allow_negative_numbers = true)]
+    warp_ms: f64,
+
+    #[command(flatten)]
+    skip: SkipArgs,
+
+    /// Which patient direction points up; A gives a plain array's +y.
+    #[arg(long, value_enum, ignore_case = true, default_value_t = Up::S)]
+    up: Up,
+
+    /// Write a chart of each volume and motion to this folder: DSSIM over time.
+    #[arg(long, value_name = "DIR")]
+    plot: Option<PathBuf>,
+
+    /// Write the worst refresh of each row to this folder: what was displayed, the true render, and where they differ.
+    #[arg(long, value_name = "DIR")]
+    error_pictures: Option<PathBuf>,
+
+    /// Print one JSON object on standard output instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &WarpBenchArgs) -> Result<(), Failure> {
+    [&args.plot, &args.error_pictures].into_iter().flatten().try_for_each(|folder| make_folder(folder))?;
+    let pace = args.pace()?;
+    let mut device = None;
+    let mut traces = Vec::new();
+    for volume in &args.volumes {
+        device = Some(args.measure_volume(volume, &pace, &mut traces)?);
+    }
+    if let Some(folder) = &args.plot {
+        charts::draw(folder, &traces, &pace.display)?;
+    }
+    if args.json {
+        return print_json(&json!({
+            "device": device.as_ref().map(Device::to_json),
+            "size": args.size,
+            "refresh_hz": args.refresh_hz,
+            "render_ms": args.render_ms,
+            "rows": traces.iter().map(Trace::to_json).collect::<Vec<_>>(),
+        }));
+    }
+    let mut tables: Vec<String> = device.iter().map(Device::to_string).collect();
+    tables.push(trace::to_table(&traces));
+    print(&tables.join("\n"))
+}
+
+impl WarpBenchArgs {
+    fn pace(&self) -> Result<Pace, Failure> {
+        let display = Display::new(self.refresh_hz).map_err(Failure::input)?;
+        let reserve_s = 1e-3 * self.warp_ms;
+        if reserve_s >= display.period_s() {
+            return Err(Failure::input(format!(
+                "--warp-ms {}: a refresh at {} Hz has {:.3} ms",
+                self.warp_ms,
+                self.refresh_hz,
+                1e3 * display.period_s()
+            )));
+        }
+        Ok(Pace { display, render_s: 1e-3 * self.render_ms, reserve_s })
+    }
+
+    fn measure_volume(
+        &self,
+        described: &str,
+        pace: &Pace,
+        traces: &mut Vec<Trace>,
+    ) -> Result<Device, Failure> {
+        let Opened { volume, name, benchmark } = open(described)?;
+        let transfer = self.tf.clone().unwrap_or_else(|| default_transfer(&benchmark));
+        let resolved = transfer.resolve(&volume, None)?;
+        let placement = Placement::new(&volume, world_from_patient(volume.grid(), self.up.direction()));
+        let settings =
+            Settings { shading: self.shading, ..Settings::new(resolved.window, resolved.transfer.clone()) };
+        let storage = StorageKind::lossless_for(&volume);
+        let mut engine = Engine::gpu(Gpu::open_best()?, &volume, storage)?;
+        let parameters = CastParameters::new(&settings, &placement);
+        let shot = engine.prepare(&parameters, &self.skip.resolve(SkipName::Auto)?)?;
+        let frustum = Frustum::from_fov_y(self.fov_deg.to_radians(), self.size).map_err(Failure::input)?;
+        let orbit = Orbit { distance_m: self.distance + RADIUS_M, ..Orbit::default() };
+        let middle = orbit.view(Projection::Perspective(frustum), self.size);
+        let extent = Extent { turn_rad: self.turn_deg.to_radians(), sideways_m: self.sideways };
+        let warps = if self.warps.is_empty() { WarpName::value_variants() } else { &self.warps };
+        let layered = warps
+            .contains(&WarpName::Volumetric)
+            .then(|| Layered { caster: Caster::with_storage(&volume, storage), parameters: &parameters });
+        let mut camera = Camera { engine: &mut engine, shot, layered };
+        for &motion in &self.motions {
+            let refreshes = refreshes(&motion.about(Pose::of(&middle), extent)?, pace, self.size)?;
+            let session = Session {
+                volume: &name,
+                motion,
+                like: &middle,
+                refreshes: &refreshes,
+                warps,
+                keeps_worst: self.error_pictures.is_some(),
+            };
+            let bar = Bar::new(format!("{name}, {}", motion.name()), refreshes.len() as u64);
+            for trace in session::run(&session, &mut camera, &bar)? {
+                if let Some(folder) = &self.error_pictures {
+                    pictures::write(folder, &trace)?;
+                }
+                traces.push(trace);
+            }
+        }
+        Ok(Device::of(&engine))
+    }
+}

@@ -1,0 +1,91 @@
+//! One motion: every refresh by every warp against a true render.
+
+use super::motion::MotionName;
+use super::source::{Camera, Source};
+use super::timeline::Refresh;
+use super::trace::{Trace, Worst};
+use super::warp::WarpName;
+use crate::backend::milliseconds;
+use crate::failure::Failure;
+use crate::progress::Bar;
+use anyhow::Context as _;
+use std::time::Instant;
+use wheatstone_core::image::RgbImage;
+use wheatstone_core::metrics::{SsimMap, dssim};
+use wheatstone_core::view::View;
+
+/// What is shown and how.
+pub(super) struct Session<'a> {
+    pub(super) volume: &'a str,
+    pub(super) motion: MotionName,
+    /// The projection and size of all views.
+    pub(super) like: &'a View,
+    pub(super) refreshes: &'a [Refresh],
+    pub(super) warps: &'a [WarpName],
+    /// Whether the pictures of the worst refresh are wanted.
+    pub(super) keeps_worst: bool,
+}
+
+/// Runs the motion once for each warp at once.
+pub(super) fn run(
+    session: &Session<'_>,
+    camera: &mut Camera<'_, '_>,
+    bar: &Bar,
+) -> Result<Vec<Trace>, Failure> {
+    let missed = session.refreshes.iter().filter(|refresh| refresh.is_missed).count();
+    let new_trace = |&warp: &WarpName| Trace {
+        volume: session.volume.to_owned(),
+        motion: session.motion,
+        warp,
+        dssim: Vec::new(),
+        warp_ms: Vec::new(),
+        missed,
+        worst: None,
+    };
+    let mut traces: Vec<Trace> = session.warps.iter().map(new_trace).collect();
+    let mut displayed: Vec<Option<RgbImage>> = session.warps.iter().map(|_| None).collect();
+    let mut source: Option<Source> = None;
+    for (number, refresh) in session.refreshes.iter().enumerate() {
+        let kept = source.take().filter(|source| source.picture == refresh.picture);
+        let source = source.insert(match kept {
+            Some(kept) => kept,
+            None => camera.source(refresh.picture, refresh.cast_from.view(session.like))?,
+        });
+        let wanted = refresh.eyes.view(session.like);
+        let truth = camera.cast(wanted)?.over_background([0.0; 3]);
+        for (trace, displayed) in traces.iter_mut().zip(&mut displayed) {
+            let kept = displayed.take().filter(|_| refresh.is_missed);
+            let picture = match kept {
+                Some(kept) => kept,
+                None => {
+                    let start = Instant::now();
+                    let warped = trace.warp.warp(source, &wanted)?;
+                    trace.warp_ms.push(milliseconds(start.elapsed()));
+                    warped.over_background([0.0; 3])
+                }
+            };
+            trace.compare(number, &picture, &truth, session.keeps_worst)?;
+            *displayed = Some(picture);
+        }
+        bar.advance();
+    }
+    Ok(traces)
+}
+
+impl Trace {
+    fn compare(
+        &mut self,
+        refresh: usize,
+        displayed: &RgbImage,
+        truth: &RgbImage,
+        keeps_worst: bool,
+    ) -> Result<(), Failure> {
+        let ssim = SsimMap::new(displayed, truth).context("the displayed picture")?;
+        let off = dssim(ssim.mean());
+        if keeps_worst && self.dssim.iter().all(|&before| before < off) {
+            self.worst = Some(Worst { refresh, displayed: displayed.clone(), truth: truth.clone(), ssim });
+        }
+        self.dssim.push(off);
+        Ok(())
+    }
+}
