@@ -12,6 +12,7 @@ use image::{
 use std::io;
 use std::path::Path;
 use wheatstone_core::image::RgbImage;
+use wheatstone_core::metrics::{SsimMap, dssim};
 use wheatstone_io::write_atomically;
 
 /// Bits per channel of a PNG file.
@@ -126,6 +127,12 @@ fn over_black(decoded: DynamicImage) -> RgbImage {
     let pixels = decoded.into_rgba32f();
     let rgb = pixels.pixels().map(|p| [0, 1, 2].map(|c| p.0[c] * p.0[3])).collect();
     RgbImage { width: pixels.width(), height: pixels.height(), rgb }
+}
+
+/// The DSSIM of the window around each pixel of a picture: black is 0, white `white` or more.
+pub(crate) fn dssim_picture(ssim: &SsimMap, picture: &RgbImage, white: f64) -> RgbImage {
+    let grey = |ssim: f64| [(dssim(ssim) / white).clamp(0.0, 1.0) as f32; 3];
+    RgbImage { rgb: ssim.around_pixels().into_iter().map(grey).collect(), ..*picture }
 }
 
 #[cfg(test)]

@@ -25,8 +25,8 @@ fn append(before: RayState, segment: RayState) -> RayState {
     return state;
 }
 
-// Hands the segment over that a ray has left behind, and begins that of the next sample's slab.
-fn enter_slab(ray: Ray, place: SegmentPlace, before: SegmentedRay) -> SegmentedRay {
+// Hands the segment over that a ray has left behind.
+fn leave_segment(place: SegmentPlace, before: SegmentedRay) -> SegmentedRay {
     var under_way = before;
     if under_way.segment.transmittance < 1.0 {
         put_segment(place, under_way.slab, under_way.segment);
@@ -34,6 +34,12 @@ fn enter_slab(ray: Ray, place: SegmentPlace, before: SegmentedRay) -> SegmentedR
         under_way.segment.color = vec3f(0.0);
         under_way.segment.transmittance = 1.0;
     }
+    return under_way;
+}
+
+// Leaves the segment, and begins that of the next sample's slab.
+fn enter_slab(ray: Ray, place: SegmentPlace, before: SegmentedRay) -> SegmentedRay {
+    var under_way = leave_segment(place, before);
     under_way.segment.depth_m = ray_depth_m(ray, f32(under_way.next));
     // A ray has one segment in each slab, however the bounds are rounded.
     under_way.slab = min(slab_at(under_way.segment.depth_m), under_way.slab - 1);
@@ -99,11 +105,8 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
         under_way.state.samples += under_way.next - stretch_begin;
     }
     under_way.state.is_finished |= select(0u, 1u, under_way.next >= ray.sample_count);
-    if (under_way.state.is_finished == 1u || under_way.next >= end) && under_way.segment.transmittance < 1.0 {
-        put_segment(place, under_way.slab, under_way.segment);
-        under_way.state = append(under_way.state, under_way.segment);
-        under_way.segment.color = vec3f(0.0);
-        under_way.segment.transmittance = 1.0;
+    if under_way.state.is_finished == 1u || under_way.next >= end {
+        under_way = leave_segment(place, under_way);
     }
     return under_way;
 }
