@@ -1,7 +1,7 @@
 //! What to show and how: the settings that both casters take.
 
 use crate::transfer::TransferFunction;
-use crate::volume::{Volume, Window};
+use crate::volume::{Grid, Volume, Window};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 /// How samples along a ray become a pixel.
@@ -177,10 +177,15 @@ pub struct Placement {
 impl Placement {
     /// Places a volume by a rigid or uniformly scaled map from patient space (mm) to the world (m).
     pub fn new(volume: &Volume, world_from_patient: DAffine3) -> Self {
+        Self::of_grid(volume.grid(), world_from_patient)
+    }
+
+    /// The same of a volume whose grid alone is at hand.
+    pub fn of_grid(grid: &Grid, world_from_patient: DAffine3) -> Self {
         let metres_per_mm = world_from_patient.matrix3.determinant().abs().cbrt();
         Self {
-            world_from_texture: world_from_patient * volume.grid().patient_from_texture(),
-            voxel_length_m: volume.grid().voxel_length_mm() * metres_per_mm,
+            world_from_texture: world_from_patient * grid.patient_from_texture(),
+            voxel_length_m: grid.voxel_length_mm() * metres_per_mm,
         }
     }
 

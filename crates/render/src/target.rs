@@ -109,6 +109,11 @@ impl Target {
         self.size
     }
 
+    /// Premultiplied RGBA of 32-bit floats, to be shown.
+    pub fn color(&self) -> &wgpu::Texture {
+        &self.color
+    }
+
     /// Reads the picture back.
     ///
     /// # Errors

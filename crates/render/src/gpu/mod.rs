@@ -33,6 +33,7 @@ pub struct AdapterDescription {
 /// this crate calls.
 #[derive(Debug)]
 pub struct Gpu {
+    adapter: wgpu::Adapter,
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     description: AdapterDescription,
@@ -41,7 +42,15 @@ pub struct Gpu {
 
 /// Every adapter that could be used, the best first: discrete, integrated, virtual, other, software.
 pub fn adapters() -> Vec<AdapterDescription> {
-    ranked_adapters().iter().map(describe).collect()
+    ranked_adapters(&instance()).iter().map(describe).collect()
+}
+
+/// The graphics APIs that adapters are looked for in.
+pub fn instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::PRIMARY,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    })
 }
 
 impl Gpu {
@@ -74,16 +83,27 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::NoAdapter`] if none is accepted, [`GpuError::Device`] if it cannot be opened.
     pub fn open(accept: impl Fn(&AdapterDescription) -> bool) -> Result<Self, GpuError> {
-        let candidates = ranked_adapters();
+        Self::open_first(ranked_adapters(&instance()), |adapter| accept(&describe(adapter)))
+    }
+
+    /// Opens the best adapter that can show pictures on a surface of the instance.
+    ///
+    /// # Errors
+    /// As [`Gpu::open_best`].
+    pub fn open_for_surface(
+        instance: &wgpu::Instance,
+        surface: &wgpu::Surface<'_>,
+    ) -> Result<Self, GpuError> {
+        Self::open_first(ranked_adapters(instance), |adapter| adapter.is_surface_supported(surface))
+    }
+
+    fn open_first(
+        candidates: Vec<wgpu::Adapter>,
+        accept: impl Fn(&wgpu::Adapter) -> bool,
+    ) -> Result<Self, GpuError> {
         let found = candidates.len();
-        let (adapter, description) = candidates
-            .into_iter()
-            .map(|adapter| {
-                let description = describe(&adapter);
-                (adapter, description)
-            })
-            .find(|(_, description)| accept(description))
-            .ok_or(GpuError::NoAdapter { found })?;
+        let adapter = candidates.into_iter().find(accept).ok_or(GpuError::NoAdapter { found })?;
+        let description = describe(&adapter);
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("wheatstone"),
             required_features: Capabilities::wanted_features() & adapter.features(),
@@ -91,10 +111,15 @@ impl Gpu {
             ..Default::default()
         }))
         .map_err(|error| GpuError::Device { adapter: description.name.clone(), reason: error.to_string() })?;
-        Ok(Self::from_parts(device, queue, description))
+        Ok(Self::from_parts(adapter, device, queue, description))
     }
 
-    fn from_parts(device: wgpu::Device, queue: wgpu::Queue, description: AdapterDescription) -> Self {
+    fn from_parts(
+        adapter: wgpu::Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        description: AdapterDescription,
+    ) -> Self {
         let fault = Arc::new(Mutex::new(None));
         let keep_first = |fault: &Mutex<Option<GpuError>>, error: GpuError| {
             fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
@@ -109,7 +134,22 @@ impl Gpu {
                 keep_first(&on_loss, GpuError::Lost { reason: message });
             }
         });
-        Self { device, queue, description, fault }
+        Self { adapter, device, queue, description, fault }
+    }
+
+    /// The adapter, which knows the formats of a surface.
+    pub fn adapter(&self) -> &wgpu::Adapter {
+        &self.adapter
+    }
+
+    /// The device, for passes beside those of this crate.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// Its queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
     }
 
     /// What was opened.
@@ -151,11 +191,7 @@ impl Gpu {
     }
 }
 
-fn ranked_adapters() -> Vec<wgpu::Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: wgpu::Backends::PRIMARY,
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
+fn ranked_adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
         wgpu::DeviceType::DiscreteGpu => 0,
