@@ -5,6 +5,7 @@ use crate::groups::{Bindings, GroupLayouts};
 use crate::leap::Leap;
 use crate::pipeline::{KernelFiles, build};
 use crate::renderer::Sources;
+use crate::stamps::Stamps;
 use crate::volume::TexelFormat;
 use std::collections::HashMap;
 use wheatstone_core::cast::{AMBIENT_SAMPLES, CastParameters, Classifier, SHADOW_SAMPLES};
@@ -330,8 +331,9 @@ pub(crate) fn dispatch(
     pipeline: &wgpu::ComputePipeline,
     bindings: &Bindings<'_>,
     workgroups: Workgroups<'_>,
+    stamps: Stamps<'_>,
 ) {
-    let mut pass = bindings.begin_pass(encoder, pipeline, None);
+    let mut pass = bindings.begin_timed_pass(encoder, pipeline, None, stamps);
     match workgroups {
         Workgroups::Counted([x, y]) => pass.dispatch_workgroups(x, y, 1),
         Workgroups::Listed(groups) => pass.dispatch_workgroups_indirect(groups, 0),

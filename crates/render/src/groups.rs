@@ -1,5 +1,6 @@
 //! The bind groups that the passes of a cast share.
 
+use crate::stamps::Stamps;
 use crate::uniforms::{CastUniform, ViewUniform};
 use std::num::NonZeroU64;
 use wheatstone_core::transfer::LUT_1D_ENTRIES;
@@ -78,7 +79,21 @@ impl Bindings<'_> {
         pipeline: &wgpu::ComputePipeline,
         own: Option<&wgpu::BindGroup>,
     ) -> wgpu::ComputePass<'e> {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        self.begin_timed_pass(encoder, pipeline, own, Stamps::NONE)
+    }
+
+    /// The same with timestamps.
+    pub(crate) fn begin_timed_pass<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        pipeline: &wgpu::ComputePipeline,
+        own: Option<&wgpu::BindGroup>,
+        stamps: Stamps<'_>,
+    ) -> wgpu::ComputePass<'e> {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: stamps.writes(),
+        });
         pass.set_pipeline(pipeline);
         for (index, group) in (0..).zip([self.frame, self.volume, self.target].into_iter().chain(own)) {
             pass.set_bind_group(index, group, &[]);

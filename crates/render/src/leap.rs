@@ -2,7 +2,7 @@
 
 use crate::skip::{GpuBlockRanges, GpuSkipMap};
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::skip::{BlockGrid, Structure, margin_blocks};
+use wheatstone_core::skip::{BlockGrid, BlockSize, Structure, margin_blocks};
 
 /// What the rays of a cast leap over.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +37,14 @@ impl Leap<'_> {
         }
     }
 
+    /// The blocks of a map of empty ones.
+    pub(crate) fn skip_block(&self) -> Option<BlockSize> {
+        match self {
+            Self::Nothing | Self::IdleBlocks(_) => None,
+            Self::EmptyBlocks(map) => Some(map.grid().block_size()),
+        }
+    }
+
     /// The numbers for a cast whose stored numbers map to normalised values by `scale` and `offset`.
     pub(crate) fn uniform(
         &self,
@@ -47,11 +55,7 @@ impl Leap<'_> {
         let of_leap = match self {
             Self::Nothing => LeapUniform::default(),
             Self::EmptyBlocks(map) => LeapUniform {
-                skip_margin: margin_blocks(
-                    parameters.classifier,
-                    f64::from(parameters.sampling_factor).recip(),
-                    map.grid().block_size(),
-                ) as f32,
+                skip_margin: skip_margin(parameters, map.grid().block_size()),
                 octant_slices: match map.structure() {
                     Structure::Anisotropic => map.grid().dims()[2] as i32,
                     Structure::Occupancy | Structure::Distance => 0,
@@ -70,6 +74,12 @@ impl Leap<'_> {
         };
         LeapUniform { shortest_run, ..of_leap }
     }
+}
+
+/// Blocks by which the distances of a map are shortened.
+pub(crate) fn skip_margin(parameters: &CastParameters, block_size: BlockSize) -> f32 {
+    let step_voxels = f64::from(parameters.sampling_factor).recip();
+    margin_blocks(parameters.classifier, step_voxels, block_size) as f32
 }
 
 impl LeapUniform {

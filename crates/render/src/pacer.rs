@@ -59,6 +59,11 @@ impl Pacer {
     }
 }
 
+/// What samples take before any is timed, seconds, where each may read the volume up to `reads_per_sample` times.
+pub(crate) fn guessed_s(samples: f64, reads_per_sample: u32) -> f64 {
+    samples * FIRST_SECONDS_PER_SAMPLE * f64::from(reads_per_sample)
+}
+
 /// Samples of each band of a picture, estimated from a few rays of its middle row; at least one per ray.
 pub(crate) fn band_samples(parameters: &CastParameters, view: &View) -> Vec<f64> {
     let rays = RayField::new(view, parameters.texture_from_world);

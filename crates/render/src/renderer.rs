@@ -1,13 +1,15 @@
 //! The renderer: what is kept between frames, and the one loop over views.
 
 use crate::buffers::storage;
-use crate::cast_pass::{self, Tiles, Variant, VariantPipelines, Workgroups};
+use crate::cast_pass::{self, Tiles, Variant, VariantPipelines};
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
-use crate::leap::Leap;
+use crate::leap::{self, Leap};
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
+use crate::piece::Picture;
 use crate::squares::Squares;
+use crate::stamps::Stamps;
 use crate::stereo::{LayerFormat, LayerPass, PairTilePass, Quality, RepairPass, Repairs, StripPass};
 use crate::target::Target;
 use crate::tile_pass::{self, TileList, TilePass};
@@ -19,6 +21,7 @@ use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
+use wheatstone_core::skip::BlockSize;
 use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
 use wheatstone_core::view::View;
 
@@ -30,13 +33,13 @@ pub(crate) const MOST_STATE_BYTES: u64 = 64 << 20;
 pub struct Renderer {
     groups: GroupLayouts,
     pub(crate) casts: VariantPipelines,
-    tile_pass: TilePass,
+    pub(crate) tile_pass: TilePass,
     /// That of the last picture.
     tile_list: Option<TileList>,
     /// Rays of the last picture that was cast in parts.
     states: Option<wgpu::Buffer>,
     /// What targets are emptied with.
-    zeros: wgpu::Buffer,
+    pub(crate) zeros: wgpu::Buffer,
     strip_passes: HashMap<Quality, StripPass>,
     repair_pass: Option<RepairPass>,
     repairs: Option<Repairs>,
@@ -75,9 +78,12 @@ impl<'a> Sources<'a> {
 pub struct Prepared {
     pub(crate) parameters: CastParameters,
     pub(crate) variant: Variant,
-    lists_tiles: bool,
+    pub(crate) lists_tiles: bool,
     pub(crate) iterations_per_sample: u32,
     pub(crate) iterations_of_shading: u32,
+    cast_uniform: CastUniform,
+    /// Blocks of the map that is leapt by.
+    skip_block: Option<BlockSize>,
     pub(crate) view_uniform: wgpu::Buffer,
     pub(crate) frame: wgpu::BindGroup,
     pub(crate) volume: wgpu::BindGroup,
@@ -167,18 +173,6 @@ impl Renderer {
             &leap.uniform(&parameters, stored, shortest_run(gpu)),
             magnitude_scale as f32,
         );
-        let cast_uniform = init_buffer(
-            gpu,
-            "cast parameters",
-            bytemuck::bytes_of(&cast_uniform),
-            wgpu::BufferUsages::UNIFORM,
-        );
-        let view_uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("view"),
-            size: size_of::<ViewUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
         // One of the two table bindings holds the table, the other an empty one.
         let entries = parameters.lut.entries();
         let lut = &parameters.lut;
@@ -188,11 +182,7 @@ impl Renderer {
             (vec![[0; 4]; LUT_1D_ENTRIES], lut_texture(gpu, [lut.width(), lut.height()], entries))
         };
         let lut_1d = init_buffer(gpu, "lut", bytemuck::cast_slice(&lut_1d), wgpu::BufferUsages::UNIFORM);
-        let frame = bind(
-            &gpu.device,
-            &self.groups.frame,
-            &[cast_uniform.as_entire_binding(), view_uniform.as_entire_binding()],
-        );
+        let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
         let leap_texture = leap.texture();
         let volume = bind(
             &gpu.device,
@@ -213,10 +203,60 @@ impl Renderer {
             lists_tiles,
             iterations_per_sample,
             iterations_of_shading,
+            cast_uniform,
+            skip_block: leap.skip_block(),
             view_uniform,
             frame,
             volume,
         })
+    }
+
+    /// The same, cast with steps so many times as long.
+    ///
+    /// # Errors
+    /// No memory, a lost device.
+    pub(crate) fn with_longer_steps(
+        &self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        step_factor: f64,
+    ) -> Result<Prepared, GpuError> {
+        let sampling_factor = (f64::from(prepared.parameters.sampling_factor) / step_factor) as f32;
+        let parameters = CastParameters { sampling_factor, ..prepared.parameters.clone() };
+        let skip_margin = prepared.skip_block.map_or(0.0, |block| leap::skip_margin(&parameters, block));
+        let cast_uniform = CastUniform { sampling_factor, skip_margin, ..prepared.cast_uniform };
+        let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
+        gpu.check()?;
+        Ok(Prepared {
+            parameters,
+            cast_uniform,
+            view_uniform,
+            frame,
+            volume: prepared.volume.clone(),
+            ..*prepared
+        })
+    }
+
+    /// The buffer of a view and the group that it makes with some parameters.
+    fn frame(&self, gpu: &Gpu, cast_uniform: &CastUniform) -> (wgpu::Buffer, wgpu::BindGroup) {
+        let parameters = init_buffer(
+            gpu,
+            "cast parameters",
+            bytemuck::bytes_of(cast_uniform),
+            wgpu::BufferUsages::UNIFORM,
+        );
+        let view = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("view"),
+            size: size_of::<ViewUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let frame = bind(
+            &gpu.device,
+            &self.groups.frame,
+            &[parameters.as_entire_binding(), view.as_entire_binding()],
+        );
+        (view, frame)
     }
 
     /// Casts each view into its target and waits until all are done.
@@ -345,6 +385,8 @@ impl Renderer {
         let tiles = list.as_ref().map_or(&self.unused[1], |list| &list.tiles);
         let target_group = self.target_group(gpu, target, [&states, tiles]);
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target_group };
+        let tile_pass = self.tile_pass.clone();
+        let picture = Picture { bindings, list: list.as_ref().map(|list| (&tile_pass, list)) };
 
         let reads = cast_pass::reads_per_sample(parameters);
         let bands = band_samples(parameters, view);
@@ -352,6 +394,11 @@ impl Renderer {
         let covered = Squares::covered(view, &parameters.visible_corners_world());
         let mut piece = ViewUniform::of_squares(parameters, view, &covered);
         self.blank(gpu, target, &covered);
+        if let Some(list) = &list {
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            list.begin_picture(&mut encoder);
+            gpu.queue.submit([encoder.finish()]);
+        }
         let last_row = height.min(covered.bands.end * BAND_ROWS);
         while piece.first_row < last_row {
             let budget = self.pacer.budget(reads);
@@ -363,22 +410,13 @@ impl Renderer {
             piece.sample_limit = sample_limit(most_samples, iterations, share_of_ray);
             piece.band_stride = if gpu.description().is_software { spreading_stride(band_count) } else { 1 };
             piece.first_sample = 0;
-            let is_whole = piece.sample_limit == u32::MAX;
-            let variant = if is_whole { prepared.variant } else { prepared.variant.in_parts() };
-            let pipeline = self.casts.pipeline(gpu, variant)?;
+            let pipeline = self.piece_pipeline(gpu, prepared, &piece)?;
             let squares = [covered.columns.len() as u32, band_count];
             while piece.first_sample < most_samples {
                 gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&piece));
                 let mut encoder =
                     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                let workgroups = list
-                    .as_ref()
-                    .map_or(Workgroups::Counted(squares), |list| Workgroups::Listed(&list.groups));
-                if let Some(list) = list.as_ref().filter(|_| piece.first_sample == 0) {
-                    list.clear(&gpu.queue, &mut encoder);
-                    self.tile_pass.dispatch(&mut encoder, list, &bindings, squares);
-                }
-                cast_pass::dispatch(&mut encoder, &pipeline, &bindings, workgroups);
+                picture.encode_piece(&mut encoder, &pipeline, piece.first_sample, squares, Stamps::NONE);
                 let start = Instant::now();
                 gpu.queue.submit([encoder.finish()]);
                 gpu.wait()?;

@@ -16,9 +16,36 @@ pub(crate) struct Squares {
 
 impl Squares {
     pub(crate) fn covered(view: &View, corners_world: &[DVec3]) -> Self {
-        let covered = PixelRect::around(view, corners_world.iter().copied());
-        let squares = |pixels: Range<u32>| pixels.start / BAND_ROWS..pixels.end.div_ceil(BAND_ROWS);
-        Self { columns: squares(covered.columns), bands: squares(covered.rows) }
+        Self::of(&PixelRect::around(view, corners_world.iter().copied()))
+    }
+
+    /// The squares that hold some pixels.
+    pub(crate) fn of(rect: &PixelRect) -> Self {
+        let squares = |pixels: &Range<u32>| pixels.start / BAND_ROWS..pixels.end.div_ceil(BAND_ROWS);
+        Self { columns: squares(&rect.columns), bands: squares(&rect.rows) }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns.is_empty() || self.bands.is_empty()
+    }
+
+    /// Those that are in both.
+    pub(crate) fn within(&self, other: &Self) -> Self {
+        let within = |a: &Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
+        Self { columns: within(&self.columns, &other.columns), bands: within(&self.bands, &other.bands) }
+    }
+
+    /// The rectangle around both.
+    pub(crate) fn around(&self, other: &Self) -> Self {
+        let around = |a: &Range<u32>, b: &Range<u32>| a.start.min(b.start)..a.end.max(b.end);
+        match (self.is_empty(), other.is_empty()) {
+            (true, _) => other.clone(),
+            (_, true) => self.clone(),
+            _ => Self {
+                columns: around(&self.columns, &other.columns),
+                bands: around(&self.bands, &other.bands),
+            },
+        }
     }
 
     pub(crate) fn counts(&self) -> [u32; 2] {

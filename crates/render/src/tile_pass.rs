@@ -8,7 +8,9 @@ use crate::gpu::{Gpu, GpuError};
 use crate::groups::{Bindings, GroupLayouts, bind, layout, storage_buffer};
 use crate::leap::Leap;
 use crate::pipeline::{KernelFiles, build};
+use crate::stamps::Stamps;
 use wgpu::BufferUsages;
+use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Mode;
 
@@ -33,11 +35,13 @@ pub(crate) fn tiles_of([width, height]: [u32; 2]) -> u64 {
     u64::from(width.div_ceil(TILE[0])) * u64::from(height.div_ceil(TILE[1]))
 }
 
-/// The pipeline.
-#[derive(Debug)]
+/// The pipeline. Cheap to clone.
+#[derive(Debug, Clone)]
 pub(crate) struct TilePass {
     list_layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
+    /// Arguments of a cast of no tiles.
+    no_groups: wgpu::Buffer,
 }
 
 impl TilePass {
@@ -50,7 +54,12 @@ impl TilePass {
         let layout = groups.pipeline_layout(device, "tiles", Some(&list_layout));
         let files = KernelFiles { root: "tiles", choices: &CHOICES, entry_point: "list_tiles" };
         let pipeline = build(device, Some(&layout), &files)?;
-        Ok(Self { list_layout, pipeline })
+        let no_groups = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("no workgroups"),
+            contents: bytemuck::cast_slice(&[GROUPS_PER_ROW, 0, 1]),
+            usage: BufferUsages::COPY_SRC,
+        });
+        Ok(Self { list_layout, pipeline, no_groups })
     }
 
     /// The list of a picture: the one given if it has room.
@@ -69,37 +78,39 @@ impl TilePass {
         TileList { groups, tiles, is_listed, group }
     }
 
-    /// Encodes the listing of a piece of squares of `BAND_ROWS` pixels along x and y.
+    /// Encodes the listing of a piece of squares of `BAND_ROWS` pixels along x and y, of which no tile has been listed in this
+    /// picture.
     pub(crate) fn dispatch(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         list: &TileList,
         bindings: &Bindings<'_>,
         [squares_x, squares_y]: [u32; 2],
+        stamps: Stamps<'_>,
     ) {
-        let mut pass = bindings.begin_pass(encoder, &self.pipeline, Some(&list.group));
+        encoder.copy_buffer_to_buffer(&self.no_groups, 0, &list.groups, 0, None);
+        encoder.clear_buffer(&list.tiles, 0, Some(4));
+        let mut pass = bindings.begin_timed_pass(encoder, &self.pipeline, Some(&list.group), stamps);
         pass.dispatch_workgroups(squares_x, squares_y, 1);
     }
 }
 
-/// Tiles of a piece of a picture, each once.
+/// Tiles of a piece of a picture, each once per picture.
 #[derive(Debug)]
 pub(crate) struct TileList {
     /// Workgroups of the cast along x, y and z.
     pub(crate) groups: wgpu::Buffer,
     /// How many there are, and their numbers.
     pub(crate) tiles: wgpu::Buffer,
-    /// 1 for each tile that is in the list of a piece.
+    /// 1 for each tile that has been in the list of a piece of the picture.
     is_listed: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
 
 impl TileList {
-    /// Empties the list, before the next piece is listed.
-    pub(crate) fn clear(&self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder) {
+    /// Forgets which tiles have been listed, before the first piece of a picture is.
+    pub(crate) fn begin_picture(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.is_listed, 0, None);
-        queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&[GROUPS_PER_ROW, 0, 1]));
-        queue.write_buffer(&self.tiles, 0, bytemuck::bytes_of(&0_u32));
     }
 }
 

@@ -65,6 +65,16 @@ impl CellCosts {
         (self.measured_cells > 0).then(|| self.measured_sum_s / self.measured_cells as f64)
     }
 
+    /// Whether the last view tells anything.
+    pub(super) fn is_known(&self) -> bool {
+        self.mean_last_s > 0.0
+    }
+
+    /// Cells measured in this view.
+    pub(super) fn measured_cells(&self) -> usize {
+        self.measured_cells
+    }
+
     /// What the whole view that began last takes, seconds: as the one before, scaled by what has been measured of it.
     pub fn view_s(&self) -> Option<f64> {
         let cells = self.grid.cells() as f64;

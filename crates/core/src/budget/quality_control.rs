@@ -38,6 +38,17 @@ impl QualityControl {
         })
     }
 
+    /// Begins with another quality in motion than full.
+    #[must_use]
+    pub fn beginning_at(self, in_motion: Quality) -> Self {
+        Self { in_motion, ..self }
+    }
+
+    /// The quality of views in motion.
+    pub fn in_motion(&self) -> Quality {
+        self.in_motion
+    }
+
     /// The view, the transfer function or anything else that is seen has changed at a time in seconds.
     pub fn moved(&mut self, now_s: f64) {
         self.last_moved_s = Some(now_s);

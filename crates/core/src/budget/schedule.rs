@@ -93,7 +93,8 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
         &self.costs
     }
 
-    /// Cells for a refresh with so many seconds for casting, at least one; none if the picture wanted is the one shown.
+    /// Cells for a refresh with so many seconds for casting, at least one; none if the picture wanted is the one shown. While
+    /// nothing is known but cells of the same view, no more than have been measured: the first may be empty corners.
     /// Time that is negative or no number counts as none.
     pub fn plan(&mut self, available_s: f64) -> Option<Batch> {
         if self.back.is_none() && self.front.as_ref() != Some(&self.wanted) {
@@ -144,6 +145,7 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
         let is_doubtful = self.has_superseded && self.costs.mean_measured_s().is_none();
         let available_s = if is_doubtful { SHARE_IN_DOUBT * available_s } else { available_s };
         let deviations = self.margin.deviations();
+        let most = if self.costs.is_known() { usize::MAX } else { self.costs.measured_cells().max(at_least) };
         let back = self.back.as_mut()?;
         let first = back.next;
         let (mut expected_s, mut variance_s2) = (0.0, 0.0);
@@ -152,7 +154,8 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
             let cell = self.predictor.predict(&self.costs, cell).unwrap_or(unknown);
             let reserved_s = deviations * (variance_s2 + cell.variance_s2).sqrt();
             let fits = expected_s + cell.seconds + reserved_s <= available_s;
-            if !fits && back.next >= first + at_least {
+            let count = back.next - first;
+            if (!fits && count >= at_least) || count >= most {
                 break;
             }
             expected_s += cell.seconds;

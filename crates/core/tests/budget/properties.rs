@@ -146,7 +146,7 @@ fn a_transfer_function_that_triples_costs_misses_two_refreshes_at_most() {
     for refresh in 0..400 {
         let cell_s = if refresh < 300 { 0.0005 } else { 0.0015 };
         match refresh {
-            300 => schedule.supersede(request(3)),
+            300 => schedule.supersede(request(4)),
             _ => schedule.aim(request(if schedule.front() == Some(&request(2)) { 3 } else { 2 })),
         }
         let batch = schedule.plan(0.009).unwrap();

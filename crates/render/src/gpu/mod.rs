@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// Longest time that a submission may take before the device counts as hung.
-const SUBMISSION_TIMEOUT: Duration = Duration::from_secs(120);
+pub(crate) const SUBMISSION_TIMEOUT: Duration = Duration::from_secs(120);
 
 /// What an adapter says of itself.
 #[derive(Debug, Clone, PartialEq)]
@@ -173,6 +173,16 @@ impl Gpu {
             Some(_) => fault.take().map_or(Ok(()), Err),
             None => Ok(()),
         }
+    }
+
+    /// Lets work that is done report so, without waiting, then checks for errors.
+    ///
+    /// # Errors
+    /// Whatever the device reported.
+    pub fn poll(&self) -> Result<(), GpuError> {
+        let polled = self.device.poll(wgpu::PollType::Poll);
+        self.check()?;
+        polled.map(drop).map_err(|error| GpuError::Refused { reason: error.to_string() })
     }
 
     /// Waits until all submitted work is done, then checks for errors.

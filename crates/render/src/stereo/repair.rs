@@ -10,6 +10,7 @@ use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind, layout, stora
 use crate::pacer::sample_limit;
 use crate::pipeline::{KernelFiles, build};
 use crate::renderer::{MOST_STATE_BYTES, Renderer};
+use crate::stamps::Stamps;
 use crate::target::Target;
 use crate::tile_pass::{GROUPS_PER_ROW, TILE, tiles_of};
 use crate::uniforms::{PairUniform, ViewUniform};
@@ -171,7 +172,9 @@ impl Renderer {
         while view.first_sample < most_samples {
             gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&view));
             let workgroups = Workgroups::Listed(&repairs.plan);
-            repair += frame.run(|encoder| cast_pass::dispatch(encoder, &pipeline, &bindings, workgroups))?;
+            repair += frame.run(|encoder| {
+                cast_pass::dispatch(encoder, &pipeline, &bindings, workgroups, Stamps::NONE);
+            })?;
             view.first_sample = view.first_sample.saturating_add(limit);
         }
         let bytes = pair.bytes + repairs.bytes() + state_bytes;

@@ -7,6 +7,7 @@
 mod device;
 mod errors;
 mod leap;
+mod live;
 mod pairs;
 mod parity;
 mod scene;

@@ -1,0 +1,98 @@
+//! The cells of a rig's views.
+
+use crate::pacer::BAND_ROWS;
+use crate::squares::Squares;
+use wheatstone_core::budget::{BudgetError, CellGrid};
+
+/// How small and how large cells are, and how many a refresh should hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CellSizes {
+    /// Pixels, a multiple of `BAND_ROWS`.
+    smallest_side: u32,
+    per_refresh: f64,
+}
+
+impl CellSizes {
+    /// Software runs eight rays at a time: small cells are as cheap per ray as large ones, and forty per refresh are foretold
+    /// well. Hardware needs tens of thousands of rays at a time to be busy.
+    pub(super) fn of(is_software: bool) -> Self {
+        if is_software {
+            Self { smallest_side: 16, per_refresh: 40.0 }
+        } else {
+            Self { smallest_side: 64, per_refresh: 10.0 }
+        }
+    }
+
+    /// Side of the cells of a view of so many pixels that takes so many refreshes, if that is known.
+    pub(super) fn side(self, pixels: f64, refreshes: Option<f64>) -> u32 {
+        let first = 2 * self.smallest_side;
+        let largest = 8 * self.smallest_side;
+        let side = refreshes
+            .map_or(f64::from(first), |refreshes| (pixels / (self.per_refresh * refreshes.max(1e-3))).sqrt());
+        (side as u32 / BAND_ROWS * BAND_ROWS).clamp(self.smallest_side, largest)
+    }
+}
+
+/// The views of a rig as one picture, one below the other, cut into cells that are each of one view.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RigCells {
+    grid: CellGrid,
+    /// Rows from a view to the next.
+    pitch: u32,
+    height: u32,
+}
+
+impl RigCells {
+    /// Cells of views of a width and height, with sides of so many pixels or more, if there are too many else.
+    pub(super) fn new([width, height]: [u32; 2], views: usize, side: u32) -> Result<Self, BudgetError> {
+        let pitch = height.next_multiple_of(side);
+        let rows = u32::try_from(views - 1).unwrap_or(u32::MAX).saturating_mul(pitch).saturating_add(height);
+        match CellGrid::new([width, rows], side) {
+            Ok(grid) => Ok(Self { grid, pitch, height }),
+            Err(BudgetError::Cells { .. }) => Self::new([width, height], views, 2 * side),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(super) fn grid(&self) -> CellGrid {
+        self.grid
+    }
+
+    /// The view that a cell is of, and its squares there.
+    pub(super) fn squares(&self, cell: usize) -> (usize, Squares) {
+        let mut rect = self.grid.rect(cell);
+        let view = rect.rows.start / self.pitch;
+        rect.rows = rect.rows.start - view * self.pitch..(rect.rows.end - view * self.pitch).min(self.height);
+        (view as usize, Squares::of(&rect))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_square_of_every_view_is_in_one_cell() {
+        let cells = RigCells::new([70, 45], 2, 16).unwrap();
+        let mut seen = [[[0; 9]; 6]; 2];
+        for cell in 0..cells.grid().cells() {
+            let (view, squares) = cells.squares(cell);
+            for band in squares.bands {
+                squares.columns.clone().for_each(|column| seen[view][band as usize][column as usize] += 1);
+            }
+        }
+        assert!(seen.iter().flatten().flatten().all(|&count| count == 1), "{seen:?}");
+    }
+
+    #[test]
+    fn dear_views_have_small_cells_and_too_many_are_avoided() {
+        let sizes = CellSizes::of(true);
+        assert_eq!(sizes.side(768.0 * 768.0, Some(10.0)), 32);
+        assert_eq!(sizes.side(768.0 * 768.0, Some(1e6)), 16);
+        assert_eq!(sizes.side(768.0 * 768.0, Some(0.0)), 128);
+        assert_eq!(sizes.side(768.0 * 768.0, None), 32);
+        let cells = RigCells::new([8192, 8192], 2, 16).unwrap();
+        assert!(cells.grid().cells() <= 1 << 16);
+        assert!(RigCells::new([0, 5], 1, 16).is_err());
+    }
+}

@@ -1,0 +1,54 @@
+//! What is kept from picture to picture.
+
+use crate::buffers::storage;
+use crate::gpu::{Gpu, GpuError};
+use crate::target::Target;
+use crate::tile_pass::TileList;
+use wgpu::BufferUsages;
+
+/// Targets kept that are in no picture.
+const MOST_TARGETS: usize = 6;
+
+/// Targets, tile lists and rays that are in no picture now: views in motion and at rest change between few sizes.
+#[derive(Debug, Default)]
+pub(super) struct Spares {
+    /// The one given back last is the last.
+    targets: Vec<Target>,
+    lists: Vec<TileList>,
+    states: Option<wgpu::Buffer>,
+}
+
+impl Spares {
+    /// A target of a size.
+    ///
+    /// # Errors
+    /// As [`Target::new`].
+    pub(super) fn target(&mut self, gpu: &Gpu, size: [u32; 2]) -> Result<Target, GpuError> {
+        match self.targets.iter().position(|target| target.size() == size) {
+            Some(at) => Ok(self.targets.remove(at)),
+            None => Target::new(gpu, size),
+        }
+    }
+
+    pub(super) fn list(&mut self) -> Option<TileList> {
+        self.lists.pop()
+    }
+
+    /// Room for rays that are cast in parts.
+    pub(super) fn states(&mut self, gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
+        let kept = self.states.take().filter(|states| states.size() >= bytes);
+        let new = || storage(&gpu.device, "ray states", bytes, BufferUsages::empty());
+        self.states.insert(kept.unwrap_or_else(new)).clone()
+    }
+
+    pub(super) fn give_back_target(&mut self, target: Target) {
+        if self.targets.len() == MOST_TARGETS {
+            self.targets.remove(0);
+        }
+        self.targets.push(target);
+    }
+
+    pub(super) fn give_back_list(&mut self, list: TileList) {
+        self.lists.push(list);
+    }
+}
