@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::picture::Picture;
 use crate::spec;
 use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
 use wheatstone_core::image::{Image, RgbImage};
 use wheatstone_core::view::{AnatomicalDirection, Frustum, Orbit, OrthographicBox, Projection, Rig, View};
 
@@ -56,7 +57,7 @@ pub(crate) struct CameraArgs {
 }
 
 /// A patient direction by its letter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[value(rename_all = "UPPER")]
 pub(crate) enum Up {
     /// Superior.

@@ -5,6 +5,7 @@ use crate::spec::{self, WindowSpec};
 use crate::transfer_spec::{self, Resolved, TransferSpec};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Mode, Settings, Shading};
 use wheatstone_core::volume::{StorageKind, Volume, Window};
 
@@ -64,7 +65,8 @@ pub(crate) struct LookArgs {
 }
 
 /// A mode by its name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum ModeName {
     /// Direct volume rendering: emission and absorption.
     Dvr,

@@ -15,9 +15,11 @@ mod pairing;
 mod picture;
 mod plot;
 mod progress;
+mod shipped;
 mod skipping;
 mod spec;
 mod transfer_spec;
+mod viewer;
 mod volume_args;
 
 use clap::{Parser, Subcommand};
@@ -30,7 +32,8 @@ use std::process::ExitCode;
     after_help = "Examples:\n  \
         wheatstone demo\n  \
         wheatstone info head.nii.gz\n  \
-        wheatstone render head.nii.gz -o head.png --tf mri-brain-t1 --shading phong\n\n\
+        wheatstone render head.nii.gz -o head.png --tf mri-brain-t1 --shading phong\n  \
+        wheatstone view head.nii.gz\n\n\
         Exit codes: 0 done, 1 internal or GPU failure, 2 bad input or bad usage."
 )]
 struct Cli {
@@ -47,6 +50,7 @@ enum Command {
     Doctor(commands::doctor::DoctorArgs),
     Demo(commands::demo::DemoArgs),
     Bench(commands::bench::BenchArgs),
+    View(commands::view::ViewArgs),
 }
 
 fn main() -> ExitCode {
@@ -58,6 +62,7 @@ fn main() -> ExitCode {
         Command::Doctor(args) => commands::doctor::run(&args),
         Command::Demo(args) => commands::demo::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
+        Command::View(args) => commands::view::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

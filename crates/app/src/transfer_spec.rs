@@ -93,25 +93,35 @@ impl TransferSpec {
     /// The transfer function for a volume. Without a window of the user's, a file's own window counts, then a
     /// preset's, then the robust one for an automatic function; else the range of the values.
     pub(crate) fn resolve(&self, volume: &Volume, chosen: Option<Window>) -> Result<Resolved, Failure> {
-        let full = volume.full_window();
+        self.resolve_for(volume.grid().dims(), volume.full_window(), || volume.statistics(), chosen)
+    }
+
+    /// The same for a volume of which size, range and statistics are known.
+    pub(crate) fn resolve_for(
+        &self,
+        dims: [usize; 3],
+        full: Window,
+        statistics: impl Fn() -> Statistics,
+        chosen: Option<Window>,
+    ) -> Result<Resolved, Failure> {
         let ramp = |transfer| Resolved { transfer, window: chosen.unwrap_or(full) };
         Ok(match self {
             Self::Automatic => {
-                let statistics = volume.statistics();
+                let statistics = statistics();
                 let window = chosen.unwrap_or_else(|| statistics.robust_window());
-                automatic_in(volume, &statistics, window)?
+                automatic_in(dims, &statistics, window)?
             }
             Self::Ramp([v0, v1]) => ramp(TransferFunction::ramp(*v0, *v1).context("--tf")?),
             Self::Ramp2d([v0, v1, g0, g1]) => {
                 ramp(TransferFunction::ramp_2d(*v0, *v1, *g0, *g1).context("--tf")?)
             }
             Self::Preset(preset) => {
-                let recommended = || preset.recommended_window(&volume.statistics());
+                let recommended = || preset.recommended_window(&statistics());
                 let window = chosen.or_else(recommended).unwrap_or(full);
                 Resolved { transfer: preset.transfer(window).context("--tf")?, window }
             }
             Self::Benchmark(benchmark) => Resolved {
-                transfer: benchmark.transfer(volume.grid().dims()).context("--tf")?,
+                transfer: benchmark.transfer(dims).context("--tf")?,
                 window: chosen.or(benchmark.window()).unwrap_or(full),
             },
             Self::File(path) => {
@@ -122,9 +132,9 @@ impl TransferSpec {
     }
 }
 
-fn automatic_in(volume: &Volume, statistics: &Statistics, window: Window) -> Result<Resolved, Failure> {
+fn automatic_in(dims: [usize; 3], statistics: &Statistics, window: Window) -> Result<Resolved, Failure> {
     let histogram = statistics.histogram(window, AUTOMATIC_BINS);
-    let transfer = automatic(&histogram, volume.grid().dims()).context("automatic transfer function")?;
+    let transfer = automatic(&histogram, dims).context("automatic transfer function")?;
     Ok(Resolved { transfer, window })
 }
 

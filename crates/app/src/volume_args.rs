@@ -68,7 +68,8 @@ pub(crate) fn print_warnings(file: &Path, loaded: &Loaded) {
 }
 
 impl RawArgs {
-    fn layout(&self) -> Option<RawLayout> {
+    /// The layout, if it is given.
+    pub(crate) fn layout(&self) -> Option<RawLayout> {
         let (dims, voxel_type) = (self.raw_size?, self.raw_type?);
         Some(RawLayout {
             spacing_mm: self.raw_spacing.unwrap_or([1.0; 3]),

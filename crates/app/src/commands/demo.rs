@@ -7,6 +7,7 @@ use crate::look::{Look, LookArgs};
 use crate::output::make_folder;
 use crate::picture::Bits;
 use crate::progress::Bar;
+use crate::shipped::{self, BRAIN_PATH};
 use crate::skipping::Skipping;
 use crate::spec;
 use anyhow::Context as _;
@@ -18,12 +19,7 @@ use wheatstone_core::image::Image;
 use wheatstone_core::scene::Placement;
 use wheatstone_core::view::world_from_patient;
 use wheatstone_core::volume::{StorageKind, Volume};
-use wheatstone_io::{Format, read_bytes, write_atomically};
-
-/// The MNI152 T1 template; `assets/README.md` has its licence.
-const BRAIN: &[u8] = include_bytes!("../../../../assets/mni152_t1_1mm.nii.gz");
-/// Where it lies in the repository, for the commands that the contact sheet shows.
-const BRAIN_PATH: &str = "assets/mni152_t1_1mm.nii.gz";
+use wheatstone_io::write_atomically;
 
 /// A picture of the demo: the flags of `render` that make it.
 struct Shot {
@@ -118,7 +114,7 @@ struct Taken {
 pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let folder = &args.output;
     make_folder(folder)?;
-    let loaded = read_bytes(Format::Nifti, BRAIN, None).context("the shipped volume")?;
+    let loaded = shipped::brain()?;
     let volume = &loaded.volume;
     let plans = SHOTS.iter().map(|shot| plan(shot, args.size, volume)).collect::<Result<Vec<_>, _>>()?;
     let mut engine = open(args.backend, &plans, volume)?;

@@ -11,3 +11,4 @@ pub(crate) mod doctor;
 pub(crate) mod info;
 pub(crate) mod phantom;
 pub(crate) mod render;
+pub(crate) mod view;

@@ -185,14 +185,33 @@ impl Gpu {
         polled.map(drop).map_err(|error| GpuError::Refused { reason: error.to_string() })
     }
 
+    /// All texels of a texture, row by row; waits until all submitted work is done.
+    ///
+    /// # Errors
+    /// No memory, a lost or hung device.
+    pub fn read_texture<T: bytemuck::Pod>(&self, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {
+        crate::readback::read_texture(self, texture)
+    }
+
+    /// Waits until a submission is done, then checks for errors.
+    ///
+    /// # Errors
+    /// As [`Gpu::wait`].
+    pub fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+        self.wait_until(Some(submission))
+    }
+
     /// Waits until all submitted work is done, then checks for errors.
     ///
     /// # Errors
     /// [`GpuError::Hung`] after two minutes, and whatever the device reported.
     pub fn wait(&self) -> Result<(), GpuError> {
-        let polled = self
-            .device
-            .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(SUBMISSION_TIMEOUT) });
+        self.wait_until(None)
+    }
+
+    fn wait_until(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
+        let timeout = Some(SUBMISSION_TIMEOUT);
+        let polled = self.device.poll(wgpu::PollType::Wait { submission_index, timeout });
         self.check()?;
         polled.map(drop).map_err(|error| match error {
             wgpu::PollError::Timeout => GpuError::Hung { seconds: SUBMISSION_TIMEOUT.as_secs() },

@@ -1,6 +1,6 @@
 //! The skip map of a transfer function that is being edited.
 
-use super::{GpuBlockRanges, GpuSkipMap, SkipBuilder};
+use super::{GpuSkipMap, SkipBuilder};
 use crate::gpu::{Gpu, GpuError};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::skip::SkipPlan;
@@ -60,11 +60,6 @@ impl LiveSkipMap {
     /// The best map of the latest settings.
     pub fn map(&self) -> &GpuSkipMap {
         self.settled.as_ref().filter(|_| self.is_settled).unwrap_or(&self.quick)
-    }
-
-    /// The ranges of the values that maps are made from.
-    pub fn ranges(&self) -> &GpuBlockRanges {
-        self.builder.values()
     }
 
     /// Bytes on the device: both maps, the ranges, and the field that maps are worked out in.

@@ -1,0 +1,82 @@
+//! `view`: a volume in a window.
+
+use crate::failure::Failure;
+use crate::output::print_json;
+use crate::spec;
+use crate::viewer::{Opening, Player, Source, random_steps, read_steps, run_headless, run_window};
+use crate::volume_args::RawArgs;
+use clap::Args;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Show a volume in a window: look around, edit its transfer function, cut it.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    wheatstone view\n  \
+    wheatstone view head.nii.gz\n  \
+    wheatstone view saved.json\n  \
+    wheatstone view head.nii.gz --script session.jsonl --json\n  \
+    xvfb-run wheatstone view --soak 60 --seed 1 --json\n\n\
+    Press ? in the window for the keys.")]
+pub(crate) struct ViewArgs {
+    /// Volume or saved view (.json) [default: the brain that ships with Wheatstone].
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+
+    /// Width and height of the window, points.
+    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = spec::picture_size)]
+    size: [u32; 2],
+
+    /// Play the events of a file: one JSON value a line.
+    #[arg(long, value_name = "FILE.jsonl")]
+    script: Option<PathBuf>,
+
+    /// Play random events for so many seconds.
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..=86_400), conflicts_with = "script")]
+    soak: Option<u64>,
+
+    /// Which random events.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "soak")]
+    seed: u64,
+
+    /// Open no window; events come from --script or --soak alone.
+    #[arg(long)]
+    headless: bool,
+
+    /// Print what was measured as one JSON object when the viewer ends.
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let player = args.player()?;
+    if args.headless && player.is_none() {
+        return Err(Failure::input("--headless needs --script or --soak"));
+    }
+    let is_played = player.is_some();
+    let source = Source { file: args.file.clone(), layout: args.raw.layout() };
+    let opening = Opening { source, player, size: args.size, begun };
+    let report = if args.headless { run_headless(opening)? } else { run_window(opening)? };
+    if args.json {
+        print_json(&report.to_json())?;
+    }
+    match report.failures.first() {
+        Some(failure) if is_played => Err(Failure::Internal(anyhow::anyhow!("{failure}"))),
+        _ => Ok(()),
+    }
+}
+
+impl ViewArgs {
+    fn player(&self) -> Result<Option<Player>, Failure> {
+        Ok(match (&self.script, self.soak) {
+            (Some(path), _) => Some(Player::new(read_steps(path)?.into_iter())),
+            (None, Some(seconds)) => Some(Player::new(random_steps(self.seed, Duration::from_secs(seconds)))),
+            (None, None) => None,
+        })
+    }
+}

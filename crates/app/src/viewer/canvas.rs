@@ -1,0 +1,140 @@
+//! What is drawn on: a window, or a texture that stands in for one.
+
+use crate::failure::Failure;
+use crate::picture::{Bits, write_png};
+use anyhow::anyhow;
+use std::path::Path;
+use wheatstone_core::image::RgbImage;
+use wheatstone_render::{Gpu, GpuError};
+
+/// Formats of what is drawn on, the best first: colours are display-referred already, so none that converts them.
+const FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Bgra8Unorm];
+
+/// A surface of a window, or nothing but a size.
+pub(crate) enum Canvas {
+    Window { surface: wgpu::Surface<'static>, config: wgpu::SurfaceConfiguration },
+    Offscreen { texture: wgpu::Texture },
+}
+
+/// What one refresh is drawn on.
+pub(crate) enum Sheet {
+    Window(wgpu::SurfaceTexture),
+    Offscreen(wgpu::TextureView),
+}
+
+impl Sheet {
+    pub(crate) fn view(&self) -> wgpu::TextureView {
+        match self {
+            Self::Window(texture) => texture.texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            Self::Offscreen(view) => view.clone(),
+        }
+    }
+}
+
+impl Canvas {
+    /// The surface of a window of some pixels.
+    pub(crate) fn of_window(
+        gpu: &Gpu,
+        surface: wgpu::Surface<'static>,
+        [width, height]: [u32; 2],
+    ) -> Result<Self, Failure> {
+        let mut config = surface
+            .get_default_config(gpu.adapter(), width.max(1), height.max(1))
+            .ok_or_else(|| anyhow!("the adapter {} cannot show a window", gpu.description().name))?;
+        let offered = surface.get_capabilities(gpu.adapter()).formats;
+        let format = FORMATS.into_iter().find(|format| offered.contains(format));
+        config.format = format.ok_or_else(|| anyhow!("the window takes none of the formats {FORMATS:?}"))?;
+        config.present_mode = wgpu::PresentMode::AutoVsync;
+        config.desired_maximum_frame_latency = 1;
+        surface.configure(gpu.device(), &config);
+        gpu.check()?;
+        Ok(Self::Window { surface, config })
+    }
+
+    /// A texture in the place of a window.
+    pub(crate) fn offscreen(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Ok(Self::Offscreen { texture: texture(gpu, size, FORMATS[0])? })
+    }
+
+    pub(crate) fn format(&self) -> wgpu::TextureFormat {
+        match self {
+            Self::Window { config, .. } => config.format,
+            Self::Offscreen { texture } => texture.format(),
+        }
+    }
+
+    /// Width and height, pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Window { config, .. } => [config.width, config.height],
+            Self::Offscreen { texture } => [texture.width(), texture.height()],
+        }
+    }
+
+    /// Follows a change of the window's size; a window without area keeps its last one.
+    pub(crate) fn resize(&mut self, gpu: &Gpu, [width, height]: [u32; 2]) -> Result<(), GpuError> {
+        let largest = gpu.capabilities().largest_2d_side;
+        let size = [width.min(largest), height.min(largest)];
+        if size.contains(&0) || size == self.size() {
+            return Ok(());
+        }
+        match self {
+            Self::Window { surface, config } => {
+                [config.width, config.height] = size;
+                surface.configure(gpu.device(), config);
+            }
+            Self::Offscreen { texture: old } => *old = texture(gpu, size, FORMATS[0])?,
+        }
+        gpu.check()
+    }
+
+    /// A sheet to draw on; none where the window cannot be drawn on just now.
+    pub(crate) fn sheet(&self, gpu: &Gpu) -> Option<Sheet> {
+        match self {
+            Self::Offscreen { texture } => {
+                Some(Sheet::Offscreen(texture.create_view(&wgpu::TextureViewDescriptor::default())))
+            }
+            Self::Window { surface, config } => match surface.get_current_texture() {
+                wgpu::CurrentSurfaceTexture::Success(texture)
+                | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => Some(Sheet::Window(texture)),
+                wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
+                    surface.configure(gpu.device(), config);
+                    None
+                }
+                _ => None,
+            },
+        }
+    }
+}
+
+/// A texture that can be drawn on and read.
+pub(crate) fn texture(
+    gpu: &Gpu,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+) -> Result<wgpu::Texture, GpuError> {
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("offscreen"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    gpu.check()?;
+    Ok(texture)
+}
+
+/// Writes a texture of one of the canvas's formats to a PNG file; waits for the device.
+pub(crate) fn write_texture(gpu: &Gpu, texture: &wgpu::Texture, path: &Path) -> Result<(), Failure> {
+    let texels: Vec<[u8; 4]> = gpu.read_texture(texture)?;
+    let is_blue_first = texture.format() == wgpu::TextureFormat::Bgra8Unorm;
+    let rgb = |&[a, b, c, _]: &[u8; 4]| {
+        let rgb = if is_blue_first { [c, b, a] } else { [a, b, c] };
+        rgb.map(|channel| f32::from(channel) / 255.0)
+    };
+    let rgb = texels.iter().map(rgb).collect();
+    write_png(path, &RgbImage { width: texture.width(), height: texture.height(), rgb }, Bits::Eight)
+}

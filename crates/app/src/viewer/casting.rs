@@ -1,0 +1,191 @@
+//! The volume on the device, and the pictures that are cast of it under a budget.
+
+use super::loading::Arrived;
+use super::state::{Clip, EyeMethod, Look, State, Transfer};
+use crate::failure::Failure;
+use crate::look::ModeName;
+use std::sync::Arc;
+use std::time::Duration;
+use wheatstone_core::budget::QualityControl;
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::scene::Placement;
+use wheatstone_core::skip::SkipPlan;
+use wheatstone_core::view::{View, world_from_patient};
+use wheatstone_core::volume::Grid;
+use wheatstone_render::live::{Activity, Front, LiveError, LiveView};
+use wheatstone_render::skip::SkipBuilder;
+use wheatstone_render::{Gpu, GpuError, GpuVolume, Leap, Prepared, Renderer, Sources};
+
+/// Refreshes that a picture in motion takes at most.
+const REFRESHES_IN_MOTION: f64 = 4.0;
+
+/// What has not changed for so long rests, seconds.
+const REST_AFTER_S: f64 = 0.25;
+
+/// Casts what a state shows.
+pub(crate) struct Casting {
+    renderer: Renderer,
+    scene: Option<Scene>,
+}
+
+/// One volume.
+struct Scene {
+    grid: Grid,
+    volume: GpuVolume,
+    skipping: Option<(SkipBuilder, SkipPlan)>,
+    settings: Settings,
+    aimed: Vec<View>,
+    live: LiveView,
+    is_resting: bool,
+    /// That have been complete.
+    pictures: u64,
+}
+
+/// What has to be prepared anew when it changes.
+#[derive(Debug, Clone, PartialEq)]
+struct Settings {
+    look: Look,
+    transfer: Transfer,
+    clip: Clip,
+}
+
+impl Settings {
+    fn of(state: &State) -> Self {
+        // Background and handles are drawn over what is cast.
+        let look = Look { background: [0.0; 3], ..state.look };
+        Self { look, transfer: state.transfer.clone(), clip: Clip { has_handles: false, ..state.clip } }
+    }
+}
+
+impl Casting {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { renderer: Renderer::new(gpu)?, scene: None })
+    }
+
+    /// Shows another volume; the picture of the last one stays until one of this is complete.
+    pub(crate) fn receive(
+        &mut self,
+        gpu: &Gpu,
+        arrived: Arrived,
+        state: &State,
+        size: [u32; 2],
+    ) -> Result<(), Failure> {
+        let Arrived { facts, volume, mut skipping } = arrived;
+        let settings = Settings::of(state);
+        let prepared = prepare(gpu, &mut self.renderer, &facts.grid, &volume, skipping.as_mut(), state)?;
+        let aimed = views(state, size)?;
+        let (live, pictures) = match self.scene.take() {
+            Some(Scene { mut live, pictures, .. }) => {
+                live.replace(prepared);
+                (live, pictures)
+            }
+            None => {
+                let control = QualityControl::new(REFRESHES_IN_MOTION, REST_AFTER_S);
+                let control = control.map_err(|error| live_failure(error.into()))?;
+                (LiveView::new(gpu, prepared, &aimed, Some(control)).map_err(live_failure)?, 0)
+            }
+        };
+        let is_resting = false;
+        self.scene =
+            Some(Scene { grid: facts.grid, volume, skipping, settings, aimed, live, is_resting, pictures });
+        Ok(())
+    }
+
+    /// Aims at what a state shows in an area of some pixels.
+    pub(crate) fn follow(&mut self, gpu: &Gpu, state: &State, size: [u32; 2]) -> Result<(), Failure> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let settings = Settings::of(state);
+        if settings != scene.settings {
+            let Scene { grid, volume, skipping, .. } = &mut *scene;
+            let prepared = prepare(gpu, &mut self.renderer, grid, volume, skipping.as_mut(), state)?;
+            scene.live.supersede(prepared);
+            scene.settings = settings;
+            scene.is_resting = false;
+        }
+        let aimed = views(state, size)?;
+        if aimed != scene.aimed {
+            scene.live.aim(&aimed).map_err(live_failure)?;
+            scene.aimed = aimed;
+            scene.is_resting = false;
+        }
+        Ok(())
+    }
+
+    /// Hands over as much work as a budget holds, without waiting.
+    pub(crate) fn refresh(&mut self, gpu: &Gpu, budget: Duration) -> Result<(), Failure> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let refresh = scene.live.refresh(gpu, &mut self.renderer, budget).map_err(live_failure)?;
+        scene.is_resting = refresh.activity == Activity::Resting;
+        if matches!(refresh.activity, Activity::Casting { completes_view: true, .. }) {
+            scene.pictures += 1;
+        }
+        Ok(())
+    }
+
+    /// The newest whole picture.
+    pub(crate) fn front(&self) -> Option<&Front> {
+        self.scene.as_ref().and_then(|scene| scene.live.front())
+    }
+
+    /// How many pictures have been complete so far: another number is another front.
+    pub(crate) fn pictures(&self) -> u64 {
+        self.scene.as_ref().map_or(0, |scene| scene.pictures)
+    }
+
+    /// Whether there is nothing left to cast.
+    pub(crate) fn is_resting(&self) -> bool {
+        self.scene.as_ref().is_none_or(|scene| scene.is_resting)
+    }
+
+    /// Where the volume is, if there is one.
+    pub(crate) fn placement(&self) -> Option<Placement> {
+        self.scene.as_ref().map(|scene| placement(&scene.grid, &scene.settings.look))
+    }
+}
+
+/// What is cast: a view for each eye, or one in the middle for both.
+fn views(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> {
+    let middle = state.camera.view(state.stereo.eye_size(size)).map_err(Failure::input)?;
+    Ok(match state.stereo.method {
+        EyeMethod::TwoCasts => state.stereo.views(&middle, state.camera.distance_m),
+        EyeMethod::OneCast => vec![middle],
+    })
+}
+
+fn placement(grid: &Grid, look: &Look) -> Placement {
+    Placement::of_grid(grid, world_from_patient(grid, look.up.direction()))
+}
+
+fn prepare(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    grid: &Grid,
+    volume: &GpuVolume,
+    skipping: Option<&mut (SkipBuilder, SkipPlan)>,
+    state: &State,
+) -> Result<Arc<Prepared>, Failure> {
+    let settings = state.settings().map_err(Failure::input)?;
+    let parameters = CastParameters::new(&settings, &placement(grid, &state.look));
+    // A map of its own for each settings: a picture under way still leaps by the one before.
+    let map;
+    let leap = match skipping {
+        None => Leap::Nothing,
+        Some((builder, _)) if matches!(state.look.mode, ModeName::Mip | ModeName::Minip) => {
+            Leap::IdleBlocks(builder.values())
+        }
+        Some((builder, plan)) => {
+            map = builder.map(gpu, &parameters, plan.while_edited)?;
+            Leap::EmptyBlocks(&map)
+        }
+    };
+    let sources = Sources { leap, ..Sources::volume(volume) };
+    Ok(Arc::new(renderer.prepare(gpu, &sources, parameters)?))
+}
+
+/// A device that fails is the device's failure.
+fn live_failure(error: LiveError) -> Failure {
+    match error {
+        LiveError::Gpu(error) => Failure::Gpu(error),
+        other => Failure::Internal(other.into()),
+    }
+}

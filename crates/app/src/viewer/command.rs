@@ -1,0 +1,58 @@
+//! What the viewer can be told to do, by a panel, a key or a script.
+
+use super::state::Edit;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// One thing to do.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Command {
+    /// Opens a volume, or a saved view with the volume that it shows.
+    Open(PathBuf),
+    /// Opens the volume that ships with the program.
+    OpenShipped,
+    /// Reads the volume again and keeps everything else.
+    Reload,
+    /// Saves what is shown, as JSON.
+    Save(PathBuf),
+    /// Writes the picture, once it is at rest: PNG.
+    Picture(PathBuf),
+    /// Writes the whole window as it is now: PNG.
+    Screenshot(PathBuf),
+    /// Writes so many pictures at rest of a full turn, numbered before the extension: PNG.
+    Turntable { pictures: u32, path: PathBuf },
+    /// Takes a transfer function by name or from a file, as `--tf` does.
+    Preset(String),
+    /// Ends the program.
+    Quit,
+    /// Changes what is shown.
+    #[serde(untagged)]
+    Edit(Edit),
+}
+
+impl From<Edit> for Command {
+    fn from(edit: Edit) -> Self {
+        Self::Edit(edit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_and_edits_are_written_alike() {
+        let parse = |text: &str| serde_json::from_str::<Command>(text);
+        assert_eq!(parse(r#"{"save": "a.json"}"#).unwrap(), Command::Save("a.json".into()));
+        assert_eq!(parse(r#""quit""#).unwrap(), Command::Quit);
+        let orbit = Edit::Orbit { right_deg: 5.0, up_deg: 0.0 };
+        assert_eq!(parse(r#"{"orbit": {"right_deg": 5, "up_deg": 0}}"#).unwrap(), orbit.into());
+        assert_eq!(parse(r#"{"shading": "directional:4"}"#).unwrap(), {
+            let directions = 4;
+            Edit::Shading(wheatstone_core::scene::Shading::Directional { directions }).into()
+        });
+        assert!(parse(r#"{"shading": "gouraud"}"#).is_err());
+        assert!(parse(r#"{"dance": 1}"#).is_err());
+    }
+}

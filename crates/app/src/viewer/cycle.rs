@@ -1,0 +1,318 @@
+//! One refresh after the other: input, commands, pictures, panels; then work for the device.
+
+use super::canvas::{Canvas, Sheet, texture, write_texture};
+use super::capture::{Capture, Subject};
+use super::casting::Casting;
+use super::eyes;
+use super::report::Report;
+use super::screen::{Panels, Pictures, Screen};
+use super::script::{Due, Happening, Player, Status};
+use super::session::Session;
+use super::show::Area;
+use super::timings::{Frame, Timings};
+use super::ui::{Desk, Shown, dress};
+use crate::failure::Failure;
+use egui::{Context, PlatformOutput, RawInput, Rect, ViewportId};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use wheatstone_render::{Gpu, GpuError};
+
+/// How often a cast under way is looked after.
+const LOOK_AFTER: Duration = Duration::from_millis(3);
+
+/// How often messages are looked at.
+const READ_NOTES: Duration = Duration::from_millis(500);
+
+/// Part of a refresh that casting gets at least.
+const LEAST_SHARE: f64 = 0.25;
+
+/// Session, device and panels.
+pub(crate) struct Viewer {
+    gpu: Arc<Gpu>,
+    session: Session,
+    casting: Casting,
+    screen: Screen,
+    format: wgpu::TextureFormat,
+    desk: Desk,
+    context: Context,
+    player: Option<Player>,
+    timings: Timings,
+    report: Report,
+    /// When the last refresh began, and what drawing took.
+    last: (Instant, Duration),
+    /// Pictures that were complete when the last refresh was drawn.
+    drawn_pictures: u64,
+    /// When panels want to be drawn again.
+    repaint_at: Option<Instant>,
+}
+
+/// What the window has to do after a refresh.
+pub(crate) struct Refreshed {
+    pub(crate) platform: PlatformOutput,
+    /// A size that is asked for, points.
+    pub(crate) resize: Option<[u32; 2]>,
+}
+
+impl Viewer {
+    pub(crate) fn new(
+        gpu: Arc<Gpu>,
+        session: Session,
+        player: Option<Player>,
+        context: Context,
+        canvas: &Canvas,
+        begun: Instant,
+    ) -> Result<Self, Failure> {
+        dress(&context);
+        let device = format!("{} ({})", gpu.description().name, gpu.description().backend);
+        Ok(Self {
+            casting: Casting::new(&gpu)?,
+            screen: Screen::new(&gpu, canvas.format()),
+            format: canvas.format(),
+            desk: Desk::new(),
+            timings: Timings::default(),
+            report: Report::new(begun, device),
+            last: (begun, Duration::ZERO),
+            drawn_pictures: 0,
+            repaint_at: Some(begun),
+            gpu,
+            session,
+            context,
+            player,
+        })
+    }
+
+    pub(crate) fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Whether the program is to end.
+    pub(crate) fn has_quit(&self) -> bool {
+        self.session.has_quit()
+    }
+
+    /// What has been measured, with everything that has failed.
+    pub(crate) fn into_report(self) -> Report {
+        let mut report = self.report;
+        report.failures = self.session.notes.failures().to_vec();
+        report
+    }
+
+    /// Asks for a refresh: something has come in.
+    pub(crate) fn touch(&mut self) {
+        self.repaint_at = Some(Instant::now());
+    }
+
+    /// When the next refresh or the next look after the cast is due; none as long as nothing comes in.
+    pub(crate) fn due_at(&self) -> Option<Instant> {
+        let cast = (!self.casting.is_resting()).then(|| Instant::now() + LOOK_AFTER);
+        [self.refresh_at(), cast].into_iter().flatten().min()
+    }
+
+    /// Whether a refresh is due; else [`Viewer::look_after`] what is being cast.
+    pub(crate) fn wants_refresh(&self) -> bool {
+        self.refresh_at().is_some_and(|at| at <= Instant::now())
+    }
+
+    /// Gives the device more to cast without drawing anything.
+    pub(crate) fn look_after(&mut self) -> Result<(), Failure> {
+        let budget = self.refresh_time();
+        let looked = self.casting.refresh(&self.gpu, budget);
+        self.survive(looked)
+    }
+
+    /// Takes in events, draws, shows, and hands over work.
+    pub(crate) fn refresh(&mut self, mut input: RawInput, canvas: &mut Canvas) -> Result<Refreshed, Failure> {
+        let begun = Instant::now();
+        self.receive(canvas)?;
+        let (due, resize) = self.play(begun, &mut input);
+        let mut output = self.run_panels(input);
+        let area = output.1;
+        let size = canvas.size();
+        let pixels = area_in_pixels(area, output.0.pixels_per_point).within(size);
+        let followed = self.casting.follow(&self.gpu, self.session.state(), pixels.size());
+        self.survive(followed)?;
+        let mut panels = Panels::new(&self.context, &mut output.0, size);
+        self.screen.update(&self.gpu, &mut panels);
+        let pictures = self.pictures(pixels);
+        if let Some(sheet) = canvas.sheet(&self.gpu) {
+            let submission = self.screen.draw(&self.gpu, &sheet.view(), &pictures, &panels);
+            if let Sheet::Window(texture) = sheet {
+                self.gpu.queue().present(texture);
+            }
+            let waited = self.gpu.wait_for(submission);
+            self.survive(waited.map_err(Failure::Gpu))?;
+            self.report.shown(pictures.eyes.is_some());
+            let due: Vec<Instant> = due.iter().map(|due| due.at).collect();
+            self.report.latencies.record(&due, Instant::now());
+        }
+        self.capture(&pictures, &panels, size)?;
+        self.screen.free(&panels);
+        self.drawn_pictures = self.casting.pictures();
+        self.measure(begun);
+        let left = self.refresh_time().saturating_sub(begun.elapsed());
+        let budget = left.max(self.refresh_time().mul_f64(LEAST_SHARE));
+        let cast = self.casting.refresh(&self.gpu, budget);
+        self.survive(cast)?;
+        Ok(Refreshed { platform: output.0.platform_output, resize })
+    }
+
+    /// When the next refresh is due.
+    fn refresh_at(&self) -> Option<Instant> {
+        let now = Instant::now();
+        let player = self.player.as_ref().and_then(Player::next_at);
+        let is_busy = self.casting.pictures() != self.drawn_pictures
+            || (self.session.is_capturing() && self.casting.is_resting());
+        [self.repaint_at, player, is_busy.then_some(now)].into_iter().flatten().min()
+    }
+
+    /// Shows a volume that has arrived.
+    fn receive(&mut self, canvas: &Canvas) -> Result<(), Failure> {
+        let Some(arrived) = self.session.step(&self.gpu) else { return Ok(()) };
+        let received = self.casting.receive(&self.gpu, *arrived, self.session.state(), canvas.size());
+        self.survive(received)
+    }
+
+    /// Does what a script has due; gives that, and a size that it asks for.
+    fn play(&mut self, now: Instant, input: &mut RawInput) -> (Vec<Due>, Option<[u32; 2]>) {
+        let Some(player) = &mut self.player else { return (Vec::new(), None) };
+        let status = Status {
+            is_loading: self.session.progress().is_some(),
+            is_at_rest: self.casting.is_resting() && !self.session.is_capturing(),
+        };
+        let due = player.due(now, status).unwrap_or_else(|reason| {
+            self.session.notes.failed(reason);
+            self.session.perform(&super::command::Command::Quit);
+            Vec::new()
+        });
+        let mut resize = None;
+        for Due { happening, .. } in &due {
+            match happening {
+                Happening::Command(command) => self.session.perform(command),
+                Happening::Event(event) => input.events.push(event.clone()),
+                Happening::Drop(path) => {
+                    self.session.perform(&super::command::Command::Open(path.clone()));
+                }
+                Happening::Resize(size) => resize = Some(*size),
+            }
+        }
+        (due, resize)
+    }
+
+    /// Lays the panels out and does what they ask for; gives what is to be drawn and the picture's area in points.
+    fn run_panels(&mut self, input: RawInput) -> (egui::FullOutput, Rect) {
+        let Self { session, casting, desk, timings, report, context, .. } = self;
+        let notes = session.notes.latest().to_vec();
+        let quality = described_quality(casting);
+        let mut commands = Vec::new();
+        let mut area = Rect::NOTHING;
+        let output = context.run_ui(input, |ui| {
+            let shown = Shown {
+                state: session.state(),
+                facts: session.facts(),
+                placement: casting.placement(),
+                progress: session.progress(),
+                notes: &notes,
+                timings,
+                device: &report.device,
+                quality: &quality,
+            };
+            let pass = desk.show(ui, &shown);
+            area = pass.picture;
+            commands.extend(pass.commands);
+        });
+        commands.iter().for_each(|command| session.perform(command));
+        let delay =
+            output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |out| out.repaint_delay);
+        let delay = if commands.is_empty() { delay } else { Duration::ZERO };
+        let delay = if notes.is_empty() { delay } else { delay.min(READ_NOTES) };
+        self.repaint_at = Instant::now().checked_add(delay);
+        (output, area)
+    }
+
+    fn pictures(&self, area: Area) -> Pictures {
+        let state = self.session.state();
+        Pictures {
+            arrangement: state.stereo.arrangement,
+            area,
+            background: state.look.background,
+            eyes: self.casting.front().and_then(eyes::pictures),
+        }
+    }
+
+    /// Writes the files that are asked for.
+    fn capture(&mut self, pictures: &Pictures, panels: &Panels, size: [u32; 2]) -> Result<(), Failure> {
+        let is_at_rest = self.casting.is_resting()
+            && self.session.progress().is_none()
+            && pictures.eyes.is_some()
+            && self.casting.pictures() == self.drawn_pictures;
+        for capture in self.session.take_captures(is_at_rest) {
+            let written = self.write(&capture, pictures, panels, size);
+            match written {
+                Ok(()) => self.session.notes.done(format!("wrote {}", capture.path.display())),
+                failed => self.survive(failed)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn write(
+        &mut self,
+        capture: &Capture,
+        pictures: &Pictures,
+        panels: &Panels,
+        size: [u32; 2],
+    ) -> Result<(), Failure> {
+        let Self { gpu, screen, format, .. } = self;
+        let size = if capture.subject == Subject::Picture { pictures.area.size() } else { size };
+        let texture = texture(gpu, size, *format)?;
+        let sheet = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        match capture.subject {
+            Subject::Picture => {
+                let alone = Pictures { area: Area::whole(size), eyes: pictures.eyes.clone(), ..*pictures };
+                screen.draw_pictures_alone(gpu, &sheet, &alone);
+            }
+            Subject::Window => {
+                screen.draw(gpu, &sheet, pictures, panels);
+            }
+        }
+        write_texture(gpu, &texture, &capture.path)
+    }
+
+    fn measure(&mut self, begun: Instant) {
+        let total = begun.saturating_duration_since(self.last.0);
+        let milliseconds = |duration: Duration| duration.as_secs_f32() * 1e3;
+        let draw = begun.elapsed();
+        self.timings.push(Frame { total_ms: milliseconds(total), draw_ms: milliseconds(draw) });
+        self.report.refreshes.push(draw);
+        self.last = (begun, draw);
+    }
+
+    fn refresh_time(&self) -> Duration {
+        Duration::from_secs_f64(self.session.state().pace.refresh_ms / 1e3)
+    }
+
+    /// Notes a failure; a device that is gone ends the program.
+    fn survive(&mut self, outcome: Result<(), Failure>) -> Result<(), Failure> {
+        match outcome {
+            Err(Failure::Gpu(error @ (GpuError::Lost { .. } | GpuError::Hung { .. }))) => Err(error.into()),
+            Err(failure) => {
+                self.session.notes.failed(failure.to_string());
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
+    }
+}
+
+fn described_quality(casting: &Casting) -> String {
+    let Some(front) = casting.front() else { return "nothing cast yet".to_owned() };
+    let [width, height] = front.pictures().next().map_or([0; 2], |(target, _)| target.size());
+    let percent = 100.0 * front.quality().resolution();
+    format!("{width}×{height} pixels cast, {percent:.0} % of full resolution")
+}
+
+fn area_in_pixels(area: Rect, pixels_per_point: f32) -> Area {
+    let pixels = |points: f32| (points * pixels_per_point).round().max(0.0) as u32;
+    let (left, top) = (pixels(area.left()), pixels(area.top()));
+    Area { left, top, width: pixels(area.right()) - left, height: pixels(area.bottom()) - top }
+}

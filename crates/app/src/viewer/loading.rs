@@ -1,0 +1,121 @@
+//! A volume on its way from a file to the device, in the background.
+
+use super::facts::Facts;
+use super::job::{Job, Progress, Waker};
+use crate::failure::Failure;
+use crate::shipped;
+use crate::volume_args::print_warnings;
+use anyhow::Context as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use wheatstone_core::skip::{Skip, SkipPlan, SkipRequest};
+use wheatstone_core::volume::{StorageKind, Volume};
+use wheatstone_io::{RawLayout, read_raw, read_volume};
+use wheatstone_render::skip::{SkipBuilder, SkipKernels};
+use wheatstone_render::{Gpu, GpuVolume, TexelFormat};
+
+/// Which volume.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Source {
+    /// The file; none is the volume that ships with the program.
+    pub(crate) file: Option<PathBuf>,
+    /// The layout of a raw file that does not tell it by its name.
+    pub(crate) layout: Option<RawLayout>,
+}
+
+/// A volume in memory.
+pub(crate) struct Read {
+    volume: Volume,
+    facts: Facts,
+}
+
+/// A volume on the device.
+pub(crate) struct Arrived {
+    pub(crate) facts: Facts,
+    pub(crate) volume: GpuVolume,
+    /// What skip maps are made with; none for a volume too small to skip any of.
+    pub(crate) skipping: Option<(SkipBuilder, SkipPlan)>,
+}
+
+/// Two jobs, one after the other: a file is read while the device is still being opened.
+pub(crate) enum Loading {
+    Reading(Job<Read>),
+    Uploading(Job<Arrived>),
+}
+
+/// How a load goes on.
+pub(crate) enum Step {
+    UnderWay(Loading),
+    Done(Box<Arrived>),
+}
+
+impl Loading {
+    /// Begins to read.
+    pub(crate) fn begin(source: Source, wake: Waker) -> Result<Self, Failure> {
+        let job = Job::begin("reading", wake, move |teller| {
+            let volume = read(&source)?;
+            teller.tell("measuring", None);
+            let facts = Facts::of(&volume, source.file.as_deref());
+            Ok(Read { volume, facts })
+        });
+        Ok(Self::Reading(job.context("cannot begin to read")?))
+    }
+
+    /// How far it is.
+    pub(crate) fn progress(&self) -> Progress {
+        match self {
+            Self::Reading(job) => job.progress(),
+            Self::Uploading(job) => job.progress(),
+        }
+    }
+
+    /// Goes on as far as it can without waiting.
+    pub(crate) fn step(self, gpu: &Arc<Gpu>, wake: &Waker) -> Result<Step, Failure> {
+        Ok(match self {
+            Self::Reading(mut job) => Step::UnderWay(match job.poll() {
+                Some(read) => Self::upload(read?, gpu, wake)?,
+                None => Self::Reading(job),
+            }),
+            Self::Uploading(mut job) => match job.poll() {
+                Some(arrived) => Step::Done(Box::new(arrived?)),
+                None => Step::UnderWay(Self::Uploading(job)),
+            },
+        })
+    }
+
+    fn upload(read: Read, gpu: &Arc<Gpu>, wake: &Waker) -> Result<Self, Failure> {
+        let gpu = Arc::clone(gpu);
+        let job = Job::begin("uploading", Arc::clone(wake), move |teller| {
+            upload(&gpu, read, &|done| teller.tell("uploading", Some(done)))
+        });
+        Ok(Self::Uploading(job.context("cannot begin to upload")?))
+    }
+}
+
+fn read(source: &Source) -> Result<Volume, Failure> {
+    let loaded = match (&source.file, &source.layout) {
+        (None, _) => shipped::brain()?,
+        (Some(file), Some(layout)) => read_raw(file, layout)?,
+        (Some(file), None) => read_volume(file)?,
+    };
+    print_warnings(source.file.as_deref().unwrap_or(Path::new(shipped::BRAIN_PATH)), &loaded);
+    Ok(loaded.volume)
+}
+
+fn upload(gpu: &Gpu, read: Read, tell: &dyn Fn(f32)) -> Result<Arrived, Failure> {
+    let Read { volume, facts } = read;
+    let storage = StorageKind::lossless_for(&volume);
+    let format = TexelFormat::for_volume(&volume, storage, gpu);
+    let on_device =
+        GpuVolume::upload_as(gpu, &volume, format, &mut |done, all| tell(done as f32 / all as f32))?;
+    let request = SkipRequest { skip: Skip::Auto, block_size: None };
+    let plan = request.plan(on_device.dims(), storage, gpu.capabilities().skip_host());
+    let skipping = match plan {
+        Some(plan) => {
+            let kernels = SkipKernels::new(gpu)?;
+            Some((SkipBuilder::new(gpu, &kernels, &on_device, plan.block_size)?, plan))
+        }
+        None => None,
+    };
+    Ok(Arrived { facts, volume: on_device, skipping })
+}

@@ -1,0 +1,46 @@
+//! The viewer: a window that shows a volume, casts it under a budget and never waits for a cast.
+//!
+//! Panels, mouse, keys and scripts ask for [`command`]s; the [`session`] does them; its [`state`] is all that is shown.
+//! [`casting`] follows the state, [`cycle::Viewer`] makes refreshes of it, on a window ([`window`]) or without one
+//! ([`headless`]).
+
+mod canvas;
+mod capture;
+mod casting;
+mod command;
+mod cycle;
+mod eyes;
+mod facts;
+mod headless;
+mod job;
+mod latency;
+mod loading;
+mod memory;
+mod notes;
+mod report;
+mod screen;
+mod script;
+mod session;
+mod show;
+mod state;
+mod timings;
+mod ui;
+mod window;
+
+pub(crate) use headless::run as run_headless;
+pub(crate) use loading::Source;
+pub(crate) use script::{Player, random_steps, read_steps};
+pub(crate) use window::run as run_window;
+
+use std::time::Instant;
+
+/// What a run of the viewer begins with.
+pub(crate) struct Opening {
+    pub(crate) source: Source,
+    /// Events instead of a person's, if there are any.
+    pub(crate) player: Option<Player>,
+    /// Width and height of the window, points.
+    pub(crate) size: [u32; 2],
+    /// When the program began.
+    pub(crate) begun: Instant,
+}

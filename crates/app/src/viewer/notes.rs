@@ -1,0 +1,63 @@
+//! Messages that the window shows for a while.
+
+use std::time::{Duration, Instant};
+
+/// How long a message is shown.
+const SHOWN_FOR: Duration = Duration::from_secs(6);
+
+/// Most messages at a time.
+const MOST: usize = 5;
+
+/// Whether something went well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tone {
+    Done,
+    Failed,
+}
+
+/// One message.
+#[derive(Debug, Clone)]
+pub(crate) struct Note {
+    pub(crate) tone: Tone,
+    pub(crate) text: String,
+    since: Instant,
+}
+
+/// The latest messages, and all failures that there have ever been.
+#[derive(Debug, Default)]
+pub(crate) struct Notes {
+    latest: Vec<Note>,
+    failures: Vec<String>,
+}
+
+impl Notes {
+    /// Something that has been done.
+    pub(crate) fn done(&mut self, text: impl Into<String>) {
+        self.push(Tone::Done, text.into());
+    }
+
+    /// Something that has failed.
+    pub(crate) fn failed(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        self.failures.push(text.clone());
+        self.push(Tone::Failed, text);
+    }
+
+    /// What is to be shown now.
+    pub(crate) fn latest(&mut self) -> &[Note] {
+        self.latest.retain(|note| note.since.elapsed() < SHOWN_FOR);
+        &self.latest
+    }
+
+    /// Every failure of the session.
+    pub(crate) fn failures(&self) -> &[String] {
+        &self.failures
+    }
+
+    fn push(&mut self, tone: Tone, text: String) {
+        self.latest.retain(|note| note.text != text);
+        self.latest.push(Note { tone, text, since: Instant::now() });
+        let surplus = self.latest.len().saturating_sub(MOST);
+        self.latest.drain(..surplus);
+    }
+}

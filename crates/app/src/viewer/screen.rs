@@ -1,0 +1,122 @@
+//! Draws a refresh: pictures, then panels over them.
+
+use super::show::{Area, Show};
+use super::state::Arrangement;
+use egui::epaint::ClippedPrimitive;
+use egui::{FullOutput, TexturesDelta};
+use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
+use wheatstone_render::Gpu;
+
+/// What is kept between refreshes.
+pub(crate) struct Screen {
+    show: Show,
+    panels: Renderer,
+}
+
+/// The pictures of a refresh.
+pub(crate) struct Pictures {
+    pub(crate) arrangement: Arrangement,
+    /// In the window, pixels.
+    pub(crate) area: Area,
+    pub(crate) background: [f32; 3],
+    /// Of the left and the right eye; none as long as there are none.
+    pub(crate) eyes: Option<[wgpu::TextureView; 2]>,
+}
+
+/// The panels of a refresh, as triangles.
+pub(crate) struct Panels {
+    primitives: Vec<ClippedPrimitive>,
+    descriptor: ScreenDescriptor,
+    textures: TexturesDelta,
+}
+
+impl Panels {
+    /// Those of a pass, on a window of some pixels.
+    pub(crate) fn new(context: &egui::Context, output: &mut FullOutput, size: [u32; 2]) -> Self {
+        let pixels_per_point = output.pixels_per_point;
+        let shapes = std::mem::take(&mut output.shapes);
+        Self {
+            primitives: context.tessellate(shapes, pixels_per_point),
+            descriptor: ScreenDescriptor { size_in_pixels: size, pixels_per_point },
+            textures: std::mem::take(&mut output.textures_delta),
+        }
+    }
+}
+
+impl Screen {
+    pub(crate) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
+        Self {
+            show: Show::new(gpu.device(), format),
+            panels: Renderer::new(gpu.device(), format, RendererOptions::default()),
+        }
+    }
+
+    /// Takes in what has become of textures; once for each pass, whether it is drawn or not.
+    pub(crate) fn update(&mut self, gpu: &Gpu, panels: &mut Panels) {
+        for (id, deltas) in panels.textures.set.drain() {
+            for delta in &deltas {
+                self.panels.update_texture(gpu.device(), gpu.queue(), id, delta);
+            }
+        }
+    }
+
+    /// Draws pictures and panels.
+    pub(crate) fn draw(
+        &mut self,
+        gpu: &Gpu,
+        sheet: &wgpu::TextureView,
+        pictures: &Pictures,
+        panels: &Panels,
+    ) -> wgpu::SubmissionIndex {
+        let (device, queue) = (gpu.device(), gpu.queue());
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut commands =
+            self.panels.update_buffers(device, queue, &mut encoder, &panels.primitives, &panels.descriptor);
+        let mut pass = begin(&mut encoder, sheet).forget_lifetime();
+        self.draw_pictures(gpu, &mut pass, pictures);
+        let [width, height] = panels.descriptor.size_in_pixels;
+        pass.set_scissor_rect(0, 0, width, height);
+        self.panels.render(&mut pass, &panels.primitives, &panels.descriptor);
+        drop(pass);
+        commands.push(encoder.finish());
+        queue.submit(commands)
+    }
+
+    /// Draws pictures alone.
+    pub(crate) fn draw_pictures_alone(&self, gpu: &Gpu, sheet: &wgpu::TextureView, pictures: &Pictures) {
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut pass = begin(&mut encoder, sheet);
+        self.draw_pictures(gpu, &mut pass, pictures);
+        drop(pass);
+        gpu.queue().submit([encoder.finish()]);
+    }
+
+    /// Lets go of textures that are not drawn any more.
+    pub(crate) fn free(&mut self, panels: &Panels) {
+        panels.textures.free.iter().for_each(|id| self.panels.free_texture(id));
+    }
+
+    fn draw_pictures(&self, gpu: &Gpu, pass: &mut wgpu::RenderPass<'_>, pictures: &Pictures) {
+        let Pictures { arrangement, area, background, eyes } = pictures;
+        if let Some([left, right]) = eyes {
+            let how = (*arrangement, *area, *background);
+            self.show.draw(gpu.device(), gpu.queue(), pass, how, [left, right]);
+        }
+    }
+}
+
+fn begin<'e>(encoder: &'e mut wgpu::CommandEncoder, sheet: &wgpu::TextureView) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("refresh"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: sheet,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..Default::default()
+    })
+}

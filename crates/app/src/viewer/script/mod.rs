@@ -1,0 +1,10 @@
+//! Events without a person: from a file, or random ones.
+
+mod drag;
+mod player;
+mod random;
+mod step;
+
+pub(crate) use player::{Due, Happening, Player, Status};
+pub(crate) use random::random_steps;
+pub(crate) use step::read_steps;

@@ -1,0 +1,188 @@
+//! Plays the steps of a script when they are due.
+
+use super::step::{Goal, Step};
+use crate::viewer::command::Command;
+use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, Vec2};
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Longest time that a script waits for something.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// What a script can wait for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Status {
+    pub(crate) is_loading: bool,
+    pub(crate) is_at_rest: bool,
+}
+
+/// Something that happens to the viewer.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Happening {
+    Command(Command),
+    Event(Event),
+    Drop(PathBuf),
+    Resize([u32; 2]),
+}
+
+/// Something that happens, and since when it has been due.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Due {
+    pub(crate) at: Instant,
+    pub(crate) happening: Happening,
+}
+
+/// A script that is being played.
+pub(crate) struct Player {
+    steps: Box<dyn Iterator<Item = Step>>,
+    next: Option<Step>,
+    /// When the next step is due.
+    at: Instant,
+    /// What has begun and goes on.
+    events: VecDeque<Due>,
+    /// What is shown has to be looked at anew before anything is waited for.
+    has_acted: bool,
+}
+
+impl Player {
+    pub(crate) fn new(steps: impl Iterator<Item = Step> + 'static) -> Self {
+        let mut steps: Box<dyn Iterator<Item = Step>> = Box::new(steps);
+        let next = steps.next();
+        Self { steps, next, at: Instant::now(), events: VecDeque::new(), has_acted: false }
+    }
+
+    /// What has become due.
+    ///
+    /// # Errors
+    /// What has been waited for in vain, in words.
+    pub(crate) fn due(&mut self, now: Instant, status: Status) -> Result<Vec<Due>, String> {
+        let mut due = Vec::new();
+        self.has_acted = false;
+        loop {
+            while let Some(event) = self.events.pop_front_if(|event| event.at <= now) {
+                due.push(event);
+                self.has_acted = true;
+            }
+            if !self.events.is_empty() || self.at > now {
+                return Ok(due);
+            }
+            let Some(step) = self.next.take() else { return Ok(due) };
+            if let Step::WaitFor(goal) = step {
+                if self.has_acted || !goal.is_reached(status) {
+                    self.next = Some(step);
+                    let waited = now.saturating_duration_since(self.at);
+                    return if waited > PATIENCE {
+                        Err(format!("waited {} s in vain for {goal:?}", PATIENCE.as_secs()))
+                    } else {
+                        Ok(due)
+                    };
+                }
+                self.at = now;
+            } else {
+                self.begin(step);
+            }
+            self.next = self.steps.next();
+        }
+    }
+
+    /// Whether nothing is left to play.
+    pub(crate) fn is_over(&self) -> bool {
+        self.next.is_none() && self.events.is_empty()
+    }
+
+    /// When something may be due next.
+    pub(crate) fn next_at(&self) -> Option<Instant> {
+        (!self.is_over()).then(|| self.events.front().map_or(self.at, |event| event.at))
+    }
+
+    fn begin(&mut self, step: Step) {
+        let happenings: Vec<(Duration, Happening)> = match step {
+            Step::WaitMs(ms) => {
+                self.at += Duration::from_millis(ms);
+                Vec::new()
+            }
+            Step::WaitFor(_) => Vec::new(),
+            Step::Do(command) => at_once([Happening::Command(command)]),
+            Step::Drag(drag) => {
+                let events = drag.events();
+                let end = events.last().map_or(Duration::ZERO, |(after, _)| *after);
+                let held = (Duration::ZERO, Event::ModifiersChanged(drag.modifiers()));
+                let released = (end, Event::ModifiersChanged(Modifiers::NONE));
+                let all = std::iter::once(held).chain(events).chain([released]);
+                all.map(|(after, event)| (after, Happening::Event(event))).collect()
+            }
+            Step::Press(name) => match Key::from_name(&name) {
+                Some(key) => at_once([true, false].map(|pressed| Happening::Event(press(key, pressed)))),
+                None => Vec::new(),
+            },
+            Step::Scroll { at, points } => at_once([
+                Happening::Event(Event::PointerMoved(at.into())),
+                Happening::Event(Event::MouseWheel {
+                    unit: MouseWheelUnit::Point,
+                    delta: Vec2::new(0.0, points),
+                    phase: TouchPhase::Move,
+                    source: MouseWheelSource::Wheel,
+                    modifiers: Modifiers::NONE,
+                }),
+            ]),
+            Step::Drop(path) => at_once([Happening::Drop(path)]),
+            Step::Resize(size) => at_once([Happening::Resize(size)]),
+        };
+        let begun = self.at;
+        for (after, happening) in happenings {
+            self.at = begun + after;
+            self.events.push_back(Due { at: self.at, happening });
+        }
+    }
+}
+
+impl Goal {
+    fn is_reached(self, status: Status) -> bool {
+        match self {
+            Self::Volume => !status.is_loading,
+            Self::Rest => !status.is_loading && status.is_at_rest,
+        }
+    }
+}
+
+fn at_once<const N: usize>(happenings: [Happening; N]) -> Vec<(Duration, Happening)> {
+    happenings.into_iter().map(|happening| (Duration::ZERO, happening)).collect()
+}
+
+fn press(key: Key, pressed: bool) -> Event {
+    Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::state::Edit;
+
+    const READY: Status = Status { is_loading: false, is_at_rest: true };
+
+    #[test]
+    fn steps_are_due_one_after_the_other() {
+        let zoom = || Step::Do(Edit::Zoom(2.0).into());
+        let mut player = Player::new([zoom(), Step::WaitMs(100), zoom()].into_iter());
+        let begun = player.at;
+        assert_eq!(player.due(begun, READY).unwrap().len(), 1);
+        assert!(player.due(begun + Duration::from_millis(99), READY).unwrap().is_empty());
+        assert_eq!(player.next_at(), Some(begun + Duration::from_millis(100)));
+        let late = player.due(begun + Duration::from_millis(250), READY).unwrap();
+        assert_eq!(late[0].at, begun + Duration::from_millis(100));
+        assert!(player.is_over());
+    }
+
+    #[test]
+    fn a_goal_is_looked_at_after_what_was_done_is_shown() {
+        let steps = [Step::Do(Command::Reload), Step::WaitFor(Goal::Volume), Step::Do(Command::Quit)];
+        let mut player = Player::new(steps.into_iter());
+        let now = player.at;
+        assert_eq!(player.due(now, READY).unwrap().len(), 1);
+        let loading = Status { is_loading: true, ..READY };
+        assert!(player.due(now, loading).unwrap().is_empty() && !player.is_over());
+        assert!(player.due(now + PATIENCE + Duration::from_secs(1), loading).is_err());
+        assert_eq!(player.due(now, READY).unwrap().len(), 1);
+    }
+}

@@ -1,0 +1,240 @@
+//! What is shown, what is on its way, and what has been asked for.
+
+use super::capture::{Capture, Subject, Turntable};
+use super::command::Command;
+use super::facts::Facts;
+use super::job::{Progress, Waker};
+use super::loading::{Arrived, Loading, Source, Step};
+use super::notes::Notes;
+use super::state::{Clip, Edit, State};
+use crate::failure::Failure;
+use crate::output::check_writable;
+use crate::transfer_spec::{self, TransferSpec};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use wheatstone_core::transfer::Preset;
+use wheatstone_io::write_atomically;
+use wheatstone_render::Gpu;
+
+/// Largest saved view that is read, bytes.
+const MOST_VIEW_BYTES: u64 = 4 << 20;
+
+/// The viewer without window and device.
+pub(crate) struct Session {
+    state: State,
+    facts: Option<Facts>,
+    source: Source,
+    pending: Option<Pending>,
+    wake: Waker,
+    pub(crate) notes: Notes,
+    captures: Vec<Capture>,
+    turntable: Option<Turntable>,
+    has_quit: bool,
+}
+
+/// A volume that is on its way, and how it is to be shown.
+struct Pending {
+    source: Source,
+    loading: Loading,
+    /// None: by what suits the volume.
+    view: Option<State>,
+}
+
+impl Session {
+    /// Begins with a volume or a saved view on its way.
+    pub(crate) fn begin(source: Source, wake: Waker) -> Result<Self, Failure> {
+        let mut session = Self {
+            state: State::default(),
+            facts: None,
+            source: source.clone(),
+            pending: None,
+            wake,
+            notes: Notes::default(),
+            captures: Vec::new(),
+            turntable: None,
+            has_quit: false,
+        };
+        match &source.file {
+            Some(file) if is_view(file) => session.open(file)?,
+            _ => session.load(source, None)?,
+        }
+        Ok(session)
+    }
+
+    /// What is shown.
+    pub(crate) fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The volume that is shown, if there is one.
+    pub(crate) fn facts(&self) -> Option<&Facts> {
+        self.facts.as_ref()
+    }
+
+    /// How far a load is, if one is under way.
+    pub(crate) fn progress(&self) -> Option<Progress> {
+        self.pending.as_ref().map(|pending| pending.loading.progress())
+    }
+
+    /// Whether the program is to end.
+    pub(crate) fn has_quit(&self) -> bool {
+        self.has_quit
+    }
+
+    /// Whether pictures are still to be written.
+    pub(crate) fn is_capturing(&self) -> bool {
+        !self.captures.is_empty() || self.turntable.is_some()
+    }
+
+    /// Does what it is told; what fails is noted and changes nothing.
+    pub(crate) fn perform(&mut self, command: &Command) {
+        if let Err(failure) = self.try_perform(command) {
+            self.notes.failed(failure.to_string());
+        }
+    }
+
+    /// Goes on with a load; what has arrived is to be shown from now on.
+    pub(crate) fn step(&mut self, gpu: &Arc<Gpu>) -> Option<Box<Arrived>> {
+        let Pending { source, loading, view } = self.pending.take()?;
+        match loading.step(gpu, &self.wake) {
+            Ok(Step::UnderWay(loading)) => {
+                self.pending = Some(Pending { source, loading, view });
+                None
+            }
+            Ok(Step::Done(arrived)) => match self.receive(source, view, &arrived.facts) {
+                Ok(()) => Some(arrived),
+                Err(failure) => self.give_up(&failure),
+            },
+            Err(failure) => self.give_up(&failure),
+        }
+    }
+
+    /// Pictures to take now; those of a picture at rest only if it is.
+    pub(crate) fn take_captures(&mut self, is_at_rest: bool) -> Vec<Capture> {
+        if is_at_rest
+            && self.captures.is_empty()
+            && let Some(turntable) = &mut self.turntable
+        {
+            match turntable.next_shot() {
+                Some((capture, turn_deg)) => {
+                    self.captures.push(capture);
+                    let taken = std::mem::take(&mut self.captures);
+                    self.perform(&Edit::Orbit { right_deg: turn_deg, up_deg: 0.0 }.into());
+                    return taken;
+                }
+                None => self.turntable = None,
+            }
+        }
+        let (now, later) = std::mem::take(&mut self.captures)
+            .into_iter()
+            .partition(|capture| is_at_rest || capture.subject == Subject::Window);
+        self.captures = later;
+        now
+    }
+
+    fn try_perform(&mut self, command: &Command) -> Result<(), Failure> {
+        match command {
+            Command::Edit(edit) => self.state.apply(edit).map_err(Failure::input),
+            Command::Open(path) => self.open(path),
+            Command::OpenShipped => self.load(Source { file: None, layout: None }, None),
+            Command::Reload => self.load(self.source.clone(), Some(self.state.clone())),
+            Command::Save(path) => self.save(path),
+            Command::Picture(path) => self.capture(Subject::Picture, path),
+            Command::Screenshot(path) => self.capture(Subject::Window, path),
+            Command::Turntable { pictures, path } => {
+                check_writable(path, "png")?;
+                self.turntable = Some(Turntable::new(*pictures, path.clone()).map_err(Failure::input)?);
+                Ok(())
+            }
+            Command::Preset(name) => self.preset(name),
+            Command::Quit => {
+                self.has_quit = true;
+                Ok(())
+            }
+        }
+    }
+
+    fn capture(&mut self, subject: Subject, path: &Path) -> Result<(), Failure> {
+        check_writable(path, "png")?;
+        self.captures.push(Capture { subject, path: path.to_owned() });
+        Ok(())
+    }
+
+    fn open(&mut self, path: &Path) -> Result<(), Failure> {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        if !is_view(&path) {
+            return self.load(Source { file: Some(path), layout: None }, None);
+        }
+        let view = read_view(&path)?;
+        if self.facts.is_some() && self.pending.is_none() && view.file == self.source.file {
+            self.state = view;
+            return Ok(());
+        }
+        self.load(Source { file: view.file.clone(), layout: None }, Some(view))
+    }
+
+    fn load(&mut self, source: Source, view: Option<State>) -> Result<(), Failure> {
+        let loading = Loading::begin(source.clone(), Arc::clone(&self.wake))?;
+        self.pending = Some(Pending { source, loading, view });
+        Ok(())
+    }
+
+    fn receive(&mut self, source: Source, view: Option<State>, facts: &Facts) -> Result<(), Failure> {
+        self.state = match view {
+            Some(view) => view,
+            None => {
+                let transfer = facts.transfer(&suiting(&source))?;
+                let clip = Clip { has_handles: self.state.clip.has_handles, ..Clip::default() };
+                let mut state = self.state.clone();
+                (state.file, state.transfer, state.clip) = (source.file.clone(), transfer, clip);
+                state
+            }
+        };
+        self.source = source;
+        self.facts = Some(facts.clone());
+        self.notes.done(format!("showing {}", facts.name));
+        Ok(())
+    }
+
+    fn give_up(&mut self, failure: &Failure) -> Option<Box<Arrived>> {
+        self.notes.failed(failure.to_string());
+        None
+    }
+
+    fn save(&mut self, path: &Path) -> Result<(), Failure> {
+        check_writable(path, "json")?;
+        let text = self.state.to_json().map_err(Failure::input)?;
+        write_atomically(path, |writer| writer.write_all(text.as_bytes()))?;
+        self.notes.done(format!("saved {}", path.display()));
+        Ok(())
+    }
+
+    fn preset(&mut self, name: &str) -> Result<(), Failure> {
+        let facts = self.facts.as_ref().ok_or_else(|| Failure::input("no volume is shown yet"))?;
+        let transfer = facts.transfer(&transfer_spec::parse(name).map_err(Failure::input)?)?;
+        self.state.apply(&Edit::Transfer(transfer)).map_err(Failure::input)
+    }
+}
+
+/// Whether a path names a saved view.
+fn is_view(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+fn read_view(path: &PathBuf) -> Result<State, Failure> {
+    let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
+    let metadata = std::fs::metadata(path).map_err(|error| bad(&error))?;
+    if !metadata.is_file() || metadata.len() > MOST_VIEW_BYTES {
+        return Err(bad(&"not a saved view"));
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| bad(&error))?;
+    State::from_json(&text).map_err(|error| bad(&error))
+}
+
+/// The transfer function that a volume is shown with at first.
+fn suiting(source: &Source) -> TransferSpec {
+    match source.file {
+        None => TransferSpec::Preset(Preset::MriBrainT1),
+        Some(_) => TransferSpec::Automatic,
+    }
+}

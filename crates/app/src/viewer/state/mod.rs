@@ -1,0 +1,198 @@
+//! All that the viewer shows, and how: one value, changed by edits alone, saved and loaded as JSON.
+
+mod camera;
+mod clip;
+mod edit;
+mod look;
+mod pace;
+mod stereo;
+mod transfer;
+
+pub(crate) use camera::{Camera, Face};
+pub(crate) use clip::{Clip, Plane};
+pub(crate) use edit::Edit;
+pub(crate) use look::Look;
+pub(crate) use pace::{Pace, WarpName};
+pub(crate) use stereo::{Arrangement, EyeMethod, Stereo};
+pub(crate) use transfer::Transfer;
+
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use thiserror::Error;
+use wheatstone_core::scene::{GradientMethod, Settings};
+
+/// The version of the form that is read and written.
+const VERSION: u64 = 1;
+
+/// What is shown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct State {
+    /// Version of the form.
+    wheatstone_view: u64,
+    /// The volume file; none is the volume that ships with the program.
+    pub(crate) file: Option<PathBuf>,
+    pub(crate) camera: Camera,
+    pub(crate) look: Look,
+    pub(crate) transfer: Transfer,
+    pub(crate) clip: Clip,
+    pub(crate) stereo: Stereo,
+    pub(crate) pace: Pace,
+}
+
+/// Why a text or an edit makes no state.
+#[derive(Debug, Error)]
+pub(crate) enum StateError {
+    /// Not JSON, a field missing or unknown, or of another shape.
+    #[error("not a saved view: {0}")]
+    Syntax(#[from] serde_json::Error),
+    /// Of a later program.
+    #[error("version {found} of the form of saved views; this program reads version {VERSION}")]
+    Version {
+        /// Version in the text.
+        found: u64,
+    },
+    /// A number out of bounds, points out of order.
+    #[error("{part}: {reason}")]
+    Value {
+        /// Which part of the state.
+        part: &'static str,
+        /// What is allowed.
+        reason: String,
+    },
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            wheatstone_view: VERSION,
+            file: None,
+            camera: Camera::default(),
+            look: Look::default(),
+            transfer: Transfer::default(),
+            clip: Clip::default(),
+            stereo: Stereo::default(),
+            pace: Pace::default(),
+        }
+    }
+}
+
+impl State {
+    /// Reads a saved state.
+    pub(crate) fn from_json(text: &str) -> Result<Self, StateError> {
+        let state: Self = serde_json::from_str(text)?;
+        if state.wheatstone_view != VERSION {
+            return Err(StateError::Version { found: state.wheatstone_view });
+        }
+        state.check()?;
+        Ok(state)
+    }
+
+    /// The text that [`State::from_json`] reads.
+    pub(crate) fn to_json(&self) -> Result<String, StateError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+
+    /// Does an edit, or leaves everything as it was.
+    pub(crate) fn apply(&mut self, edit: &Edit) -> Result<(), StateError> {
+        let mut edited = self.clone();
+        edit.apply(&mut edited);
+        edited.check()?;
+        *self = edited;
+        Ok(())
+    }
+
+    /// What the casters take.
+    pub(crate) fn settings(&self) -> Result<Settings, StateError> {
+        let transfer = self.transfer.function().map_err(|error| of_part("transfer", error.to_string()))?;
+        let window = self.transfer.window().map_err(|error| of_part("transfer", error.to_string()))?;
+        let is_preintegrated = self.look.preintegrated && !transfer.is_2d();
+        Ok(Settings {
+            mode: self.look.mode.with_isovalue(self.look.isovalue as f32),
+            preintegrated: is_preintegrated,
+            shading: self.look.shading,
+            gradient: GradientMethod::CentralDifferences,
+            sampling_factor: self.look.sampling_factor as f32,
+            clip: self.clip.scene(),
+            ..Settings::new(window, transfer)
+        })
+    }
+
+    fn check(&self) -> Result<(), StateError> {
+        let parts = [
+            ("camera", self.camera.check()),
+            ("look", self.look.check()),
+            ("transfer", self.transfer.check()),
+            ("clip", self.clip.check()),
+            ("stereo", self.stereo.check()),
+            ("pace", self.pace.check()),
+        ];
+        parts.into_iter().try_for_each(|(part, check)| check.map_err(|reason| of_part(part, reason)))
+    }
+}
+
+fn of_part(part: &'static str, reason: String) -> StateError {
+    StateError::Value { part, reason }
+}
+
+/// Refuses a number that is not within bounds.
+fn within(name: &str, value: f64, lo: f64, hi: f64) -> Result<(), String> {
+    if (lo..=hi).contains(&value) {
+        Ok(())
+    } else {
+        Err(format!("{name} is {value}: must be from {lo} to {hi}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::look::ModeName;
+    use wheatstone_core::scene::Shading;
+
+    fn edited() -> State {
+        let mut state = State { file: Some("a b/c.nii.gz".into()), ..State::default() };
+        for edit in [
+            Edit::Orbit { right_deg: 30.0, up_deg: -12.5 },
+            Edit::Mode(ModeName::Iso),
+            Edit::Shading(Shading::Directional { directions: 5 }),
+            Edit::AddOpacityPoint([0.25, 0.125]),
+            Edit::ClipPlane(Some(Plane::default())),
+            Edit::Arrangement(Arrangement::Anaglyph),
+        ] {
+            state.apply(&edit).unwrap();
+        }
+        state
+    }
+
+    #[test]
+    fn what_is_saved_is_loaded() {
+        let state = edited();
+        assert_ne!(state, State::default());
+        assert_eq!(State::from_json(&state.to_json().unwrap()).unwrap(), state);
+    }
+
+    #[test]
+    fn bad_states_are_refused_with_a_reason() {
+        let json = edited().to_json().unwrap();
+        let message = |from: &str, to: &str| {
+            assert!(json.contains(from), "{from}");
+            State::from_json(&json.replacen(from, to, 1)).unwrap_err().to_string()
+        };
+        assert!(message("\"wheatstone_view\": 1", "\"wheatstone_view\": 2").contains("version 2"));
+        assert!(message("\"distance_m\":", "\"distnace_m\":").contains("distnace_m"));
+        assert!(message("\"fov_y_deg\": 40.0", "\"fov_y_deg\": 400.0").contains("400"));
+        assert!(message("directional:5", "directional:500").contains("directional"));
+        assert!(message("0.125", "1.125").contains("opacity"));
+        assert!(State::from_json("").is_err());
+    }
+
+    #[test]
+    fn an_edit_that_fails_changes_nothing() {
+        let mut state = edited();
+        let before = state.clone();
+        assert!(state.apply(&Edit::SamplingFactor(-1.0)).is_err());
+        assert!(state.apply(&Edit::Orbit { right_deg: f64::NAN, up_deg: 0.0 }).is_err());
+        assert_eq!(state, before);
+    }
+}

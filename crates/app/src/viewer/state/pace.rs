@@ -1,0 +1,50 @@
+//! How time is spent.
+
+use super::within;
+use serde::{Deserialize, Serialize};
+
+/// What a refresh has time for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Pace {
+    /// Time from one refresh to the next while something is being cast, ms.
+    pub(crate) refresh_ms: f64,
+    /// How the newest whole picture is shown from where the eye is now.
+    pub(crate) warp: WarpName,
+}
+
+/// How an old picture is shown from a new pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum WarpName {
+    /// As it is.
+    None,
+    /// As if it were infinitely far away.
+    Quad,
+    /// By the depth of its first hits.
+    Grid,
+}
+
+impl WarpName {
+    pub(crate) const ALL: [Self; 3] = [Self::None, Self::Quad, Self::Grid];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Quad => "quad",
+            Self::Grid => "grid",
+        }
+    }
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self { refresh_ms: 40.0, warp: WarpName::Grid }
+    }
+}
+
+impl Pace {
+    pub(super) fn check(&self) -> Result<(), String> {
+        within("refresh_ms", self.refresh_ms, 1.0, 1000.0)
+    }
+}

@@ -1,0 +1,91 @@
+//! One eye or two.
+
+use super::within;
+use serde::{Deserialize, Serialize};
+use wheatstone_core::view::{Rig, View};
+
+/// How many eyes, and how their pictures are arranged.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Stereo {
+    pub(crate) arrangement: Arrangement,
+    pub(crate) method: EyeMethod,
+    /// Between the eyes, metres.
+    pub(crate) eye_distance_m: f64,
+}
+
+/// How the eyes' pictures are arranged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Arrangement {
+    /// One eye.
+    Mono,
+    /// Left eye on the left.
+    SideBySide,
+    /// Red for the left eye, cyan for the right one.
+    Anaglyph,
+}
+
+/// Where the eyes' pictures come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum EyeMethod {
+    /// Each is cast.
+    TwoCasts,
+    /// One is cast in the middle and warped to both.
+    OneCast,
+}
+
+impl Arrangement {
+    pub(crate) const ALL: [Self; 3] = [Self::Mono, Self::SideBySide, Self::Anaglyph];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Mono => "one eye",
+            Self::SideBySide => "side by side",
+            Self::Anaglyph => "anaglyph",
+        }
+    }
+}
+
+impl EyeMethod {
+    pub(crate) const ALL: [Self; 2] = [Self::TwoCasts, Self::OneCast];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::TwoCasts => "cast both eyes",
+            Self::OneCast => "cast one, warp to both",
+        }
+    }
+}
+
+impl Default for Stereo {
+    fn default() -> Self {
+        Self { arrangement: Arrangement::Mono, method: EyeMethod::TwoCasts, eye_distance_m: 0.065 }
+    }
+}
+
+impl Stereo {
+    /// Size of each eye's picture within an area, pixels.
+    pub(crate) fn eye_size(&self, [width, height]: [u32; 2]) -> [u32; 2] {
+        match self.arrangement {
+            Arrangement::SideBySide => [(width / 2).max(1), height],
+            Arrangement::Mono | Arrangement::Anaglyph => [width, height],
+        }
+    }
+
+    /// What the eyes see, left one first; both see what is `convergence_m` away at the same place.
+    pub(crate) fn views(&self, middle: &View, convergence_m: f64) -> Vec<View> {
+        let rig = match self.arrangement {
+            Arrangement::Mono => Rig::Mono,
+            Arrangement::SideBySide | Arrangement::Anaglyph => {
+                Rig::Stereo { eye_distance_m: self.eye_distance_m, convergence_m }
+            }
+        };
+        rig.views(middle)
+    }
+
+    pub(super) fn check(&self) -> Result<(), String> {
+        within("eye_distance_m", self.eye_distance_m, 0.0, 1.0)
+    }
+}

@@ -1,0 +1,215 @@
+//! Handles of the clip box and the clip plane, in the picture.
+
+use super::projection::Projection;
+use super::theme::{ACCENT, LINE};
+use super::{Asked, Shown};
+use crate::viewer::state::{Arrangement, Edit, Plane};
+use egui::{Color32, Painter, Pos2, Rect, Response, Stroke, Ui, Vec2};
+use glam::{DAffine3, DVec3};
+
+/// How near the pointer must come, points.
+const REACH: f32 = 12.0;
+
+const RADIUS: f32 = 5.0;
+
+/// From the plane's foot to the tip of its normal, metres.
+const NORMAL_M: f64 = 0.25;
+
+/// Half of the side of the square that shows the plane, metres.
+const HALF_PLANE_M: f64 = 0.5;
+
+/// The handle that is being dragged.
+#[derive(Debug, Default)]
+pub(super) struct Grip(Option<Handle>);
+
+/// What can be dragged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Handle {
+    /// A face of the box, as [`Edit::MoveFace`] counts them.
+    Face(usize),
+    /// The plane, along its normal.
+    Foot,
+    /// The plane's direction.
+    Tip,
+}
+
+/// Shows the handles and follows one that is dragged; whether one is.
+pub(super) fn show(
+    grip: &mut Grip,
+    ui: &Ui,
+    area: Rect,
+    shown: &Shown<'_>,
+    picture: &Response,
+    asked: &mut Asked,
+) -> bool {
+    let clip = &shown.state.clip;
+    let is_one_picture = shown.state.stereo.arrangement != Arrangement::SideBySide;
+    let size = [area.width().max(1.0) as u32, area.height().max(1.0) as u32];
+    let (Some(placement), Ok(view)) = (shown.placement, shown.state.camera.view(size)) else { return false };
+    if !(clip.has_handles && is_one_picture) {
+        grip.0 = None;
+        return false;
+    }
+    let projection = Projection::new(view, area);
+    let world_from_texture = placement.world_from_texture();
+    let faces = [0, 1, 2, 3, 4, 5].map(|face| face_centre(clip.box_lo, clip.box_hi, face));
+    let mut handles: Vec<(Handle, DVec3)> = faces
+        .iter()
+        .enumerate()
+        .map(|(face, &centre)| (Handle::Face(face), world_from_texture.transform_point3(centre)))
+        .collect();
+    if let Some(plane) = clip.plane {
+        let [foot, tip] = foot_and_tip(&plane);
+        handles.extend([(Handle::Foot, foot), (Handle::Tip, tip)]);
+    }
+    let under = picture.hover_pos().and_then(|pointer| nearest(&projection, &handles, pointer));
+    if picture.drag_started() {
+        grip.0 = under;
+    }
+    if !picture.dragged() {
+        grip.0 = None;
+    }
+    let painter = ui.painter_at(area);
+    draw_box(&painter, &projection, world_from_texture, [clip.box_lo, clip.box_hi]);
+    if let Some(plane) = clip.plane {
+        draw_plane(&painter, &projection, &plane);
+    }
+    for &(handle, place_m) in &handles {
+        if let Some(place) = projection.place(place_m) {
+            let is_active = grip.0 == Some(handle) || under == Some(handle);
+            let fill = if is_active { ACCENT } else { Color32::from_black_alpha(160) };
+            painter.circle(place, RADIUS, fill, Stroke::new(1.5, ACCENT));
+        }
+    }
+    let Some(held) = grip.0 else { return false };
+    let by = picture.drag_delta();
+    if by != Vec2::ZERO {
+        let moved = match held {
+            Handle::Face(face) => drag_face(&projection, world_from_texture, faces[face], face, by),
+            Handle::Foot => clip.plane.and_then(|plane| drag_foot(&projection, plane, by)),
+            Handle::Tip => clip.plane.and_then(|plane| drag_tip(&projection, plane, by)),
+        };
+        moved.into_iter().for_each(|edit| asked.edit(edit));
+    }
+    true
+}
+
+fn nearest(projection: &Projection, handles: &[(Handle, DVec3)], pointer: Pos2) -> Option<Handle> {
+    handles
+        .iter()
+        .filter_map(|&(handle, place_m)| Some((handle, projection.place(place_m)?.distance(pointer))))
+        .filter(|&(_, distance)| distance < REACH)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(handle, _)| handle)
+}
+
+/// The middle of a face, texture space.
+fn face_centre(lo: DVec3, hi: DVec3, face: usize) -> DVec3 {
+    let mut centre = 0.5 * (lo + hi);
+    centre[face % 3] = if face < 3 { lo[face] } else { hi[face - 3] };
+    centre
+}
+
+/// The plane's point nearest to the volume's centre, and the tip of the normal there, world space.
+fn foot_and_tip(plane: &Plane) -> [DVec3; 2] {
+    let length_squared = plane.normal.length_squared().max(f64::MIN_POSITIVE);
+    let foot = plane.normal * (plane.offset_m / length_squared);
+    [foot, foot + plane.normal.normalize_or_zero() * NORMAL_M]
+}
+
+/// How far along a direction in the picture a drag goes, in lengths of the direction.
+fn along(by: Vec2, slope: Vec2) -> Option<f64> {
+    let squared = slope.length_sq();
+    (squared > 1e-6).then(|| f64::from(by.dot(slope) / squared))
+}
+
+fn drag_face(
+    projection: &Projection,
+    world_from_texture: DAffine3,
+    centre: DVec3,
+    face: usize,
+    by: Vec2,
+) -> Option<Edit> {
+    let axis = world_from_texture.matrix3.col(face % 3);
+    let slope = projection.slope(world_from_texture.transform_point3(centre), axis)?;
+    Some(Edit::MoveFace { face, to: centre[face % 3] + along(by, slope)? })
+}
+
+fn drag_foot(projection: &Projection, plane: Plane, by: Vec2) -> Option<Edit> {
+    let [foot, _] = foot_and_tip(&plane);
+    let moved = along(by, projection.slope(foot, plane.normal)?)?;
+    let offset_m = plane.offset_m + moved * plane.normal.length_squared();
+    Some(Edit::ClipPlane(Some(Plane { offset_m, ..plane })))
+}
+
+fn drag_tip(projection: &Projection, plane: Plane, by: Vec2) -> Option<Edit> {
+    let [foot, tip] = foot_and_tip(&plane);
+    let [right, up] = projection.point_axes(tip)?;
+    let moved = tip + right * f64::from(by.x) - up * f64::from(by.y);
+    let normal = (moved - foot).try_normalize()?;
+    Some(Edit::ClipPlane(Some(Plane { normal, offset_m: normal.dot(foot) })))
+}
+
+fn line(painter: &Painter, projection: &Projection, ends: [DVec3; 2], color: Color32) {
+    if let [Some(a), Some(b)] = ends.map(|end| projection.place(end)) {
+        painter.line_segment([a, b], Stroke::new(1.0, color));
+    }
+}
+
+fn draw_box(painter: &Painter, projection: &Projection, world_from_texture: DAffine3, [lo, hi]: [DVec3; 2]) {
+    let corner = |bits: usize| {
+        let axis = |axis: usize| if bits >> axis & 1 == 1 { hi[axis] } else { lo[axis] };
+        world_from_texture.transform_point3(DVec3::new(axis(0), axis(1), axis(2)))
+    };
+    for bits in 0..8 {
+        for axis in (0..3).filter(|axis| bits >> axis & 1 == 0) {
+            line(painter, projection, [corner(bits), corner(bits | 1 << axis)], LINE.gamma_multiply(0.6));
+        }
+    }
+}
+
+fn draw_plane(painter: &Painter, projection: &Projection, plane: &Plane) {
+    let [foot, tip] = foot_and_tip(plane);
+    let (a, b) = plane.normal.normalize_or_zero().any_orthonormal_pair();
+    let corners = [a + b, a - b, -a - b, b - a].map(|corner| foot + corner * HALF_PLANE_M);
+    for side in 0..4 {
+        line(painter, projection, [corners[side], corners[(side + 1) % 4]], ACCENT.gamma_multiply(0.6));
+    }
+    line(painter, projection, [foot, tip], ACCENT);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::state::Camera;
+    use egui::{pos2, vec2};
+
+    fn projection() -> Projection {
+        let camera = Camera::default();
+        let area = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 400.0));
+        Projection::new(camera.view([400, 400]).unwrap(), area)
+    }
+
+    #[test]
+    fn a_face_follows_the_pointer() {
+        let (projection, world) = (projection(), DAffine3::from_translation(DVec3::splat(-0.5)));
+        let centre = face_centre(DVec3::ZERO, DVec3::ONE, 4);
+        let before = projection.place(world.transform_point3(centre)).unwrap();
+        let Some(Edit::MoveFace { face: 4, to }) = drag_face(&projection, world, centre, 4, vec2(0.0, 40.0))
+        else {
+            panic!("the face stays");
+        };
+        let after = projection.place(world.transform_point3(DVec3 { y: to, ..centre })).unwrap();
+        assert!(to < 1.0 && ((after - before).y - 40.0).abs() < 6.0, "{to} {before:?} {after:?}");
+    }
+
+    #[test]
+    fn a_dragged_tip_turns_the_plane_about_its_foot() {
+        let plane = Plane { normal: DVec3::X, offset_m: 0.1 };
+        let Some(Edit::ClipPlane(Some(turned))) = drag_tip(&projection(), plane, vec2(0.0, -60.0)) else {
+            panic!("the plane stays");
+        };
+        assert!(turned.normal.y > 0.1 && (turned.normal.length() - 1.0).abs() < 1e-12);
+        assert!((turned.normal.dot(DVec3::X * 0.1) - turned.offset_m).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,157 @@
+//! Keys: what each does, and the list of them.
+
+use super::look::SHADINGS;
+use super::pointer::Tool;
+use super::{Asked, Desk};
+use crate::look::ModeName;
+use crate::viewer::command::Command;
+use crate::viewer::state::{Arrangement, Edit, Plane, State, WarpName};
+use egui::{Context, Grid, Key, Modifiers, RichText, Ui, Window};
+use std::path::PathBuf;
+
+/// A key, in words and in effect.
+struct Shortcut {
+    modifiers: Modifiers,
+    key: Key,
+    name: &'static str,
+    what: &'static str,
+    act: fn(&mut Desk, &State, &mut Asked),
+}
+
+const fn plain(
+    key: Key,
+    name: &'static str,
+    what: &'static str,
+    act: fn(&mut Desk, &State, &mut Asked),
+) -> Shortcut {
+    Shortcut { modifiers: Modifiers::NONE, key, name, what, act }
+}
+
+const fn with_command(
+    key: Key,
+    name: &'static str,
+    what: &'static str,
+    act: fn(&mut Desk, &State, &mut Asked),
+) -> Shortcut {
+    Shortcut { modifiers: Modifiers::COMMAND, ..plain(key, name, what, act) }
+}
+
+/// Keys that act once.
+const SHORTCUTS: [Shortcut; 19] = [
+    plain(Key::Questionmark, "?", "these keys", |desk, _, _| desk.shows_keys = !desk.shows_keys),
+    plain(Key::Escape, "Esc", "put this list away", |desk, _, _| desk.shows_keys = false),
+    plain(Key::H, "H", "hide or show the panels", |desk, _, _| desk.hides_panels = !desk.hides_panels),
+    plain(Key::O, "O", "drag to orbit", |desk, _, _| desk.tool = Tool::Orbit),
+    plain(Key::F, "F", "drag to look around, wheel to fly", |desk, _, _| desk.tool = Tool::Fly),
+    plain(Key::T, "T", "drag to shift and widen the window of values", |desk, _, _| desk.tool = Tool::Window),
+    plain(Key::Home, "Home", "first view", |_, _, asked| asked.edit(Edit::ResetCamera)),
+    plain(Key::M, "M", "next mode", |_, state, asked| {
+        asked.edit(Edit::Mode(following(&ModeName::ALL, state.look.mode)));
+    }),
+    plain(Key::L, "L", "next shading", |_, state, asked| {
+        asked.edit(Edit::Shading(following(&SHADINGS.map(|(shading, _)| shading), state.look.shading)));
+    }),
+    plain(Key::I, "I", "raise the isovalue", |_, state, asked| {
+        asked.edit(Edit::Isovalue(state.look.isovalue + 0.02));
+    }),
+    plain(Key::U, "U", "lower the isovalue", |_, state, asked| {
+        asked.edit(Edit::Isovalue(state.look.isovalue - 0.02));
+    }),
+    plain(Key::C, "C", "handles of the clip box", |_, state, asked| {
+        asked.edit(Edit::ClipHandles(!state.clip.has_handles));
+    }),
+    plain(Key::P, "P", "clip plane", |_, state, asked| {
+        asked.edit(Edit::ClipPlane(state.clip.plane.is_none().then(Plane::default)));
+    }),
+    plain(Key::X, "X", "one eye, side by side, anaglyph", |_, state, asked| {
+        asked.edit(Edit::Arrangement(following(&Arrangement::ALL, state.stereo.arrangement)));
+    }),
+    plain(Key::V, "V", "next warp", |_, state, asked| {
+        asked.edit(Edit::Warp(following(&WarpName::ALL, state.pace.warp)));
+    }),
+    plain(Key::F12, "F12", "write screenshot.png", |_, _, asked| {
+        asked.command(Command::Screenshot(PathBuf::from("screenshot.png")));
+    }),
+    with_command(Key::S, "Ctrl S", "save view.json", |_, _, asked| {
+        asked.command(Command::Save(PathBuf::from("view.json")));
+    }),
+    with_command(Key::R, "Ctrl R", "read the file again", |_, _, asked| asked.command(Command::Reload)),
+    with_command(Key::Q, "Ctrl Q", "end", |_, _, asked| asked.command(Command::Quit)),
+];
+
+/// Keys that act as long as they are down, and the mouse.
+const OTHERS: [(&str, &str); 9] = [
+    ("← → ↑ ↓", "orbit; with Shift: pan"),
+    ("W A S D Q E", "fly forward, left, back, right, down, up"),
+    ("drag", "orbit, look around or window, as chosen"),
+    ("Shift drag", "pan; also with the right button"),
+    ("Ctrl drag", "window: ↔ width, ↕ level"),
+    ("wheel", "come nearer; middle drag, too"),
+    ("function: drag", "move a point"),
+    ("function: double click", "add a point"),
+    ("function: right click", "remove a point"),
+];
+
+/// Acts on what has been pressed, unless a text is being typed.
+pub(super) fn listen(desk: &mut Desk, ui: &Ui, state: &State, asked: &mut Asked) {
+    if ui.ctx().text_edit_focused() {
+        return;
+    }
+    for shortcut in &SHORTCUTS {
+        let is_pressed = ui.input(|input| {
+            let is_command = shortcut.modifiers.command;
+            input.key_pressed(shortcut.key) && input.modifiers.command == is_command
+        });
+        if is_pressed {
+            (shortcut.act)(desk, state, asked);
+        }
+    }
+}
+
+/// Shows the list; whether it stays.
+pub(super) fn show(context: &Context) -> bool {
+    let mut stays = true;
+    let names = SHORTCUTS.iter().map(|shortcut| (shortcut.name, shortcut.what));
+    Window::new("Keys and mouse").open(&mut stays).collapsible(false).resizable(false).show(context, |ui| {
+        Grid::new("keys").num_columns(2).spacing([18.0, 4.0]).show(ui, |ui| {
+            for (name, what) in names.chain(OTHERS) {
+                ui.label(RichText::new(name).monospace().strong());
+                ui.label(what);
+                ui.end_row();
+            }
+        });
+    });
+    stays
+}
+
+/// The one after another, the first after the last.
+fn following<T: Copy + PartialEq>(all: &[T], value: T) -> T {
+    let next = all.iter().position(|&other| other == value).map_or(0, |index| index + 1);
+    all.get(next).or(all.first()).copied().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_goes_through_all() {
+        let seen: Vec<_> = (0..4)
+            .scan(WarpName::None, |warp, _| {
+                *warp = following(&WarpName::ALL, *warp);
+                Some(*warp)
+            })
+            .collect();
+        assert_eq!(seen, [WarpName::Quad, WarpName::Grid, WarpName::None, WarpName::Quad]);
+    }
+
+    #[test]
+    fn no_key_does_two_things() {
+        for (index, shortcut) in SHORTCUTS.iter().enumerate() {
+            let clash = SHORTCUTS[..index]
+                .iter()
+                .find(|other| other.key == shortcut.key && other.modifiers == shortcut.modifiers);
+            assert!(clash.is_none(), "{}", shortcut.name);
+        }
+    }
+}

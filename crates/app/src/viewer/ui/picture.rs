@@ -1,0 +1,78 @@
+//! The picture's area: mouse, keys that are held, dropped files.
+
+use super::pointer::{drag, scroll};
+use super::{Asked, Desk, Shown, handles};
+use crate::viewer::command::Command;
+use crate::viewer::state::Edit;
+use egui::{Key, PointerButton, Rect, Sense, Ui};
+
+/// A second of a held key, as a part of the eye's distance.
+const FLY_PER_S: f64 = 0.6;
+
+/// A second of a held arrow, degrees.
+const ORBIT_DEG_PER_S: f64 = 60.0;
+
+/// Longest time between two passes that held keys count, seconds.
+const LONGEST_PASS_S: f32 = 0.1;
+
+pub(super) fn show(desk: &mut Desk, ui: &mut Ui, area: Rect, shown: &Shown<'_>, asked: &mut Asked) {
+    let response = ui.interact(area, ui.scope_id().with("picture"), Sense::click_and_drag());
+    let is_held = handles::show(&mut desk.handles, ui, area, shown, &response, asked);
+    if !is_held {
+        for button in [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle] {
+            let by = response.drag_delta() / area.height();
+            if response.dragged_by(button) && by != egui::Vec2::ZERO {
+                let modifiers = ui.input(|input| input.modifiers);
+                asked.edit(drag(desk.tool, button, modifiers, by));
+            }
+        }
+    }
+    if response.hovered() {
+        let (points, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        if points != 0.0 {
+            asked.edit(scroll(desk.tool, shown.state, f64::from(points)));
+        }
+        if pinch != 1.0 {
+            asked.edit(Edit::Zoom(f64::from(pinch)));
+        }
+    }
+    held_keys(ui, shown, asked);
+    let dropped = ui.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
+    if let Some(path) = dropped {
+        asked.command(Command::Open(path));
+    }
+}
+
+/// Keys that move the eye for as long as they are down.
+fn held_keys(ui: &Ui, shown: &Shown<'_>, asked: &mut Asked) {
+    if ui.ctx().egui_wants_keyboard_input() {
+        return;
+    }
+    let (dt, modifiers, axes, arrows) = ui.input(|input| {
+        let axis = |plus: Key, minus: Key| {
+            f64::from(u8::from(input.key_down(plus))) - f64::from(u8::from(input.key_down(minus)))
+        };
+        let axes = [axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S)];
+        let arrows = [axis(Key::ArrowRight, Key::ArrowLeft), axis(Key::ArrowUp, Key::ArrowDown)];
+        (input.stable_dt.min(LONGEST_PASS_S), input.modifiers, axes, arrows)
+    });
+    if modifiers.command {
+        return;
+    }
+    let dt = f64::from(dt);
+    if axes != [0.0; 3] {
+        let [right_m, up_m, forward_m] =
+            axes.map(|axis| axis * FLY_PER_S * dt * shown.state.camera.distance_m);
+        asked.edit(Edit::Fly { right_m, up_m, forward_m });
+        ui.ctx().request_repaint();
+    }
+    if arrows != [0.0; 2] {
+        let [right, up] = arrows;
+        asked.edit(if modifiers.shift {
+            Edit::Pan { right: right * 0.5 * dt, up: up * 0.5 * dt }
+        } else {
+            Edit::Orbit { right_deg: right * ORBIT_DEG_PER_S * dt, up_deg: up * ORBIT_DEG_PER_S * dt }
+        });
+        ui.ctx().request_repaint();
+    }
+}
