@@ -159,10 +159,17 @@ impl Viewer {
     /// When the next refresh is due.
     fn refresh_at(&self) -> Option<Instant> {
         let now = Instant::now();
-        let player = self.player.as_ref().and_then(Player::next_at);
+        let player = self.player.as_ref().and_then(|player| player.next_at(self.status()));
         let is_busy = self.casting.pictures() != self.drawn_pictures
             || (self.session.is_capturing() && self.casting.is_resting());
         [self.repaint_at, player, is_busy.then_some(now)].into_iter().flatten().min()
+    }
+
+    fn status(&self) -> Status {
+        Status {
+            is_loading: self.session.progress().is_some(),
+            is_at_rest: self.casting.is_resting() && !self.session.is_capturing(),
+        }
     }
 
     /// Shows a volume that has arrived.
@@ -174,11 +181,8 @@ impl Viewer {
 
     /// Does what a script has due; gives that, and a size that it asks for.
     fn play(&mut self, now: Instant, input: &mut RawInput) -> (Vec<Due>, Option<[u32; 2]>) {
+        let status = self.status();
         let Some(player) = &mut self.player else { return (Vec::new(), None) };
-        let status = Status {
-            is_loading: self.session.progress().is_some(),
-            is_at_rest: self.casting.is_resting() && !self.session.is_capturing(),
-        };
         let due = player.due(now, status).unwrap_or_else(|reason| {
             self.session.notes.failed(reason);
             self.session.perform(&super::command::Command::Quit);

@@ -9,9 +9,10 @@ use super::{Opening, Player};
 use crate::failure::Failure;
 use anyhow::{Context as _, anyhow};
 use egui::{Context, ViewportId};
+use std::panic;
 use std::sync::Arc;
 use std::time::Instant;
-use wheatstone_render::{Gpu, gpu};
+use wheatstone_render::{Gpu, GpuError, gpu};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
@@ -23,12 +24,7 @@ struct Wake;
 
 /// Opens the window and runs until it is closed.
 pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
-    let event_loop = EventLoop::<Wake>::with_user_event().build().map_err(|error| {
-        Failure::Internal(anyhow!(
-            "no display to open a window on ({error}): set DISPLAY or WAYLAND_DISPLAY, run under xvfb-run, or \
-             make pictures without a window with `wheatstone render` or `wheatstone view --headless --script`"
-        ))
-    })?;
+    let event_loop = event_loop()?;
     let proxy = event_loop.create_proxy();
     let wake: Waker = Arc::new(move || drop(proxy.send_event(Wake)));
     let Opening { source, player, size, begun } = opening;
@@ -40,6 +36,24 @@ pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
         Stage::Failed(failure) => Err(failure),
         Stage::Before(_) => Err(Failure::Internal(anyhow!("the window was never opened"))),
     }
+}
+
+/// The connection to the display. A library that is missing makes winit panic.
+fn event_loop() -> Result<EventLoop<Wake>, Failure> {
+    let built =
+        panic::catch_unwind(|| EventLoop::with_user_event().build().map_err(|error| error.to_string()));
+    let reason = match built {
+        Ok(Ok(event_loop)) => return Ok(event_loop),
+        // What comes before is the place in winit's source.
+        Ok(Err(error)) => {
+            error.rsplit(": ").next().unwrap_or_default().trim_end_matches(['.', ')']).to_owned()
+        }
+        Err(_) => "a library is missing".to_owned(),
+    };
+    Err(Failure::Internal(anyhow!(
+        "no display to open a window on ({reason}): set DISPLAY or WAYLAND_DISPLAY, install libxkbcommon-x11, \
+         libXcursor and libXi, run under xvfb-run, or make pictures without a window: `wheatstone render`"
+    )))
 }
 
 struct App {
@@ -75,7 +89,7 @@ impl Before {
             .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(event_loop.create_window(attributes).context("cannot open a window")?);
         let instance = gpu::instance();
-        let surface = instance.create_surface(Arc::clone(&window)).context("cannot draw on the window")?;
+        let surface = instance.create_surface(Arc::clone(&window)).map_err(|_| no_adapter())?;
         let gpu = Arc::new(Gpu::open_for_surface(&instance, &surface)?);
         let canvas = Canvas::of_window(&gpu, surface, window.inner_size().into())?;
         let context = Context::default();
@@ -91,6 +105,11 @@ impl Before {
         let viewer = Viewer::new(gpu, self.session, self.player, context, &canvas, self.begun)?;
         Ok(Open { window, input, canvas, viewer })
     }
+}
+
+/// No driver knows windows.
+fn no_adapter() -> Failure {
+    Failure::Gpu(GpuError::NoAdapter { found: gpu::adapters().len() })
 }
 
 impl Open {

@@ -1,4 +1,4 @@
-//! The command line, run as users run it: on small phantoms, with the CPU renderer.
+//! The command line, run as users run it: on small phantoms, with the CPU renderer; the viewer on software Vulkan.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -6,3 +6,5 @@ mod pictures;
 mod refusals;
 mod reports;
 mod support;
+mod view;
+mod xvfb;

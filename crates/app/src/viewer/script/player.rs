@@ -72,28 +72,35 @@ impl Player {
                 if self.has_acted || !goal.is_reached(status) {
                     self.next = Some(step);
                     let waited = now.saturating_duration_since(self.at);
-                    return if waited > PATIENCE {
+                    return if waited >= PATIENCE {
                         Err(format!("waited {} s in vain for {goal:?}", PATIENCE.as_secs()))
                     } else {
                         Ok(due)
                     };
                 }
                 self.at = now;
-            } else {
-                self.begin(step);
+                self.next = self.steps.next();
+                continue;
             }
+            let is_capture = matches!(step, Step::Do(Command::Screenshot(_)));
+            self.begin(step);
             self.next = self.steps.next();
+            if is_capture {
+                // What follows is not to be seen on it.
+                due.extend(self.events.drain(..));
+                return Ok(due);
+            }
         }
     }
 
-    /// Whether nothing is left to play.
-    pub(crate) fn is_over(&self) -> bool {
-        self.next.is_none() && self.events.is_empty()
-    }
-
-    /// When something may be due next.
-    pub(crate) fn next_at(&self) -> Option<Instant> {
-        (!self.is_over()).then(|| self.events.front().map_or(self.at, |event| event.at))
+    /// When something is due next, as far as that is known: what is waited for may come at any time.
+    pub(crate) fn next_at(&self, status: Status) -> Option<Instant> {
+        match (self.events.front(), &self.next) {
+            (Some(event), _) => Some(event.at),
+            (None, Some(Step::WaitFor(goal))) if !goal.is_reached(status) => Some(self.at + PATIENCE),
+            (None, Some(_)) => Some(self.at),
+            (None, None) => None,
+        }
     }
 
     fn begin(&mut self, step: Step) {
@@ -168,10 +175,19 @@ mod tests {
         let begun = player.at;
         assert_eq!(player.due(begun, READY).unwrap().len(), 1);
         assert!(player.due(begun + Duration::from_millis(99), READY).unwrap().is_empty());
-        assert_eq!(player.next_at(), Some(begun + Duration::from_millis(100)));
+        assert_eq!(player.next_at(READY), Some(begun + Duration::from_millis(100)));
         let late = player.due(begun + Duration::from_millis(250), READY).unwrap();
         assert_eq!(late[0].at, begun + Duration::from_millis(100));
-        assert!(player.is_over());
+        assert_eq!(player.next_at(READY), None);
+    }
+
+    #[test]
+    fn what_follows_a_screenshot_is_not_on_it() {
+        let shot = Command::Screenshot("a.png".into());
+        let mut player = Player::new([Step::Do(shot), Step::Do(Command::Quit)].into_iter());
+        let now = player.at;
+        assert_eq!(player.due(now, READY).unwrap().len(), 1);
+        assert_eq!(player.due(now, READY).unwrap()[0].happening, Happening::Command(Command::Quit));
     }
 
     #[test]
@@ -181,7 +197,8 @@ mod tests {
         let now = player.at;
         assert_eq!(player.due(now, READY).unwrap().len(), 1);
         let loading = Status { is_loading: true, ..READY };
-        assert!(player.due(now, loading).unwrap().is_empty() && !player.is_over());
+        assert!(player.due(now, loading).unwrap().is_empty());
+        assert_eq!(player.next_at(loading), Some(now + PATIENCE));
         assert!(player.due(now + PATIENCE + Duration::from_secs(1), loading).is_err());
         assert_eq!(player.due(now, READY).unwrap().len(), 1);
     }

@@ -85,7 +85,7 @@ impl Desk {
                         if ui.button("Keys  ?").clicked() {
                             self.shows_keys = true;
                         }
-                        ui.weak(shown.device);
+                        ui.add(egui::Label::new(egui::RichText::new(shown.device).weak()).truncate());
                     });
                 });
                 ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.panels(ui, shown, &mut asked));

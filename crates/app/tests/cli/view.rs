@@ -1,0 +1,124 @@
+//! The viewer, played by scripts.
+
+use crate::support::{Bench, Run};
+use crate::xvfb::Xvfb;
+use image::RgbImage;
+
+/// A session: everything that the viewer is for, once.
+const SESSION: &str = r#"
+{"wait_for": "rest"}
+{"do": {"preset": "viridis"}}
+{"wait_for": "rest"}
+{"do": {"picture": "first.png"}}
+{"wait_for": "rest"}
+{"drag": {"from": [60, 150], "to": [200, 180], "ms": 150}}
+{"wait_for": "rest"}
+{"do": {"picture": "orbited.png"}}
+{"wait_for": "rest"}
+{"drag": {"from": [60, 150], "to": [60, 190], "ms": 60, "ctrl": true}}
+{"do": {"move_opacity_point": {"index": 1, "to": [0.6, 0.9]}}}
+{"do": {"clip_handles": true}}
+{"do": {"move_face": {"face": 3, "to": 0.5}}}
+{"do": {"clip_plane": {"normal": [0, 1, 0], "offset_m": -0.2}}}
+{"scroll": {"at": [60, 150], "points": 80}}
+{"press": "?"}
+{"wait_for": "rest"}
+{"do": {"screenshot": "clipped.png"}}
+{"do": {"arrangement": "side_by_side"}}
+{"wait_for": "rest"}
+{"do": {"picture": "pair.png"}}
+{"do": {"save": "view.json"}}
+{"wait_for": "rest"}
+{"do": {"arrangement": "anaglyph"}}
+{"do": "reset_camera"}
+{"wait_for": "rest"}
+{"resize": [560, 300]}
+{"do": {"open": "view.json"}}
+{"do": "reload"}
+{"wait_for": "rest"}
+{"do": {"save": "again.json"}}
+{"do": {"turntable": {"pictures": 2, "path": "turn.png"}}}
+{"wait_for": "rest"}
+{"do": "quit"}
+"#;
+
+fn play(script: &str, flags: &[&str], display: Option<&Xvfb>) -> (Bench, Run) {
+    let bench = Bench::new();
+    std::fs::write(bench.path("session.jsonl"), script).unwrap();
+    let args = ["view", "sphere.nrrd", "--script", "session.jsonl", "--size", "640x360", "--json"];
+    let display = display.map_or("", |xvfb| &xvfb.display);
+    let run = bench.run_in(&[&args, flags].concat(), &[("DISPLAY", display), ("WAYLAND_DISPLAY", "")]);
+    (bench, run)
+}
+
+fn picture(bench: &Bench, name: &str) -> RgbImage {
+    image::open(bench.path(name)).unwrap().into_rgb8()
+}
+
+/// Pixels that are brighter than the background.
+fn lit(picture: &RgbImage) -> usize {
+    picture.pixels().filter(|pixel| pixel.0.iter().any(|&channel| channel > 60)).count()
+}
+
+fn needs_adapter() -> bool {
+    std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_none()
+}
+
+fn assert_session(bench: &Bench, run: &Run) {
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let report = run.json();
+    assert!(report["failures"].as_array().unwrap().is_empty(), "{report}");
+    assert!(report["event_to_present_ms"]["count"].as_u64().unwrap() > 30, "{report}");
+    let first = picture(bench, "first.png");
+    assert!(first.width() < 640 && first.height() == 360, "without the panels");
+    let middle = first.get_pixel(first.width() / 2, 180).0;
+    assert!(middle.iter().any(|&channel| channel > 60), "the sphere is in the middle: {middle:?}");
+    assert!(lit(&first) > 3000);
+    let orbited = picture(bench, "orbited.png");
+    assert_ne!(first.as_raw(), orbited.as_raw());
+    assert_eq!(picture(bench, "clipped.png").dimensions(), (640, 360));
+    let pair = picture(bench, "pair.png");
+    let half = pair.width() / 2;
+    let [left, right] = [0, half].map(|x| image::imageops::crop_imm(&pair, x, 0, half, 360).to_image());
+    assert!(lit(&left) > 500 && lit(&right) > 500 && left != right);
+    let view = |name: &str| std::fs::read_to_string(bench.path(name)).unwrap();
+    assert_eq!(view("view.json"), view("again.json"));
+    assert!(lit(&picture(bench, "turn_0001.png")) > 500);
+}
+
+#[test]
+fn a_session_in_a_window_goes_without_an_error() {
+    if needs_adapter() {
+        let xvfb = Xvfb::start();
+        let (bench, run) = play(SESSION, &[], Some(&xvfb));
+        assert_session(&bench, &run);
+    }
+}
+
+#[test]
+fn the_same_session_goes_without_a_window() {
+    if needs_adapter() {
+        let (bench, run) = play(SESSION, &["--headless"], None);
+        assert_session(&bench, &run);
+    }
+}
+
+#[test]
+fn without_a_display_the_error_says_what_to_do() {
+    let (_, run) = play("{\"do\": \"quit\"}", &[], None);
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("DISPLAY") && run.stderr.contains("wheatstone render"), "{}", run.stderr);
+}
+
+#[test]
+fn scripts_and_files_that_are_no_good_are_refused() {
+    let (_, run) = play("{\"do\": \"dance\"}", &["--headless"], None);
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(run.stderr.contains("line 1"), "{}", run.stderr);
+    let bench = Bench::new();
+    assert_eq!(bench.run(&["view", "--headless"]).code, 2);
+    std::fs::write(bench.path("bad.json"), "{}").unwrap();
+    let run = bench.run(&["view", "bad.json", "--headless", "--soak", "1"]);
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(run.stderr.contains("bad.json"), "{}", run.stderr);
+}
