@@ -26,6 +26,7 @@ mod target;
 mod tile_pass;
 mod uniforms;
 mod volume;
+pub mod warp;
 
 pub use gpu::{AdapterDescription, Gpu, GpuError};
 pub use gradient_map::GpuGradientMap;

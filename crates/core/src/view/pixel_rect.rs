@@ -19,10 +19,14 @@ pub struct PixelRect {
 impl PixelRect {
     /// The pixels whose rays can meet the convex hull of world points; all of them if one is not in front of the eye.
     pub fn around(view: &View, world_points: impl IntoIterator<Item = DVec3>) -> Self {
-        let [width, height] = view.size;
-        let pixels: Option<Vec<DVec2>> =
-            world_points.into_iter().map(|point| view.pixel_position(point)).collect();
-        let Some(pixels) = pixels else {
+        Self::of_positions(world_points.into_iter().map(|point| view.pixel_position(point)), view.size)
+    }
+
+    /// The pixels, of a picture of a size, about the convex hull of positions, in pixels from the top left; all of them if one
+    /// is nowhere.
+    pub(crate) fn of_positions(positions: impl Iterator<Item = Option<DVec2>>, size: [u32; 2]) -> Self {
+        let [width, height] = size;
+        let Some(pixels) = positions.collect::<Option<Vec<DVec2>>>() else {
             return Self { columns: 0..width, rows: 0..height };
         };
         let range = |along: fn(&DVec2) -> f64, size: u32| {

@@ -63,16 +63,21 @@ pub enum WarpError {
 impl WarpError {
     /// Refuses a picture that is not of the view.
     pub(super) fn unless_of(image: &Image, view: &View) -> Result<(), Self> {
-        let size = [image.width, image.height];
-        if size != view.size {
-            return Err(Self::Mismatch { image: size, view: view.size });
-        }
+        Self::unless_of_size([image.width, image.height], view)?;
         let pixels = image.width as usize * image.height as usize;
         let (colors, depths) = (image.color.len(), image.depth_m.len());
         if colors != pixels || depths != pixels {
             return Err(Self::Pixels { colors, depths, pixels });
         }
         Ok(())
+    }
+
+    /// Refuses a picture of another size than the view.
+    ///
+    /// # Errors
+    /// [`WarpError::Mismatch`].
+    pub fn unless_of_size(image: [u32; 2], view: &View) -> Result<(), Self> {
+        if image == view.size { Ok(()) } else { Err(Self::Mismatch { image, view: view.size }) }
     }
 
     /// Refuses what is no distance.

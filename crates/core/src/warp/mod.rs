@@ -9,7 +9,6 @@
 //! in the same order by any number of threads. All geometry is in a [`PixelMap`], a matrix and a vector that a shader takes as
 //! uniforms.
 
-mod cells;
 mod column;
 mod depth_tiles;
 mod emission_absorption;
@@ -18,12 +17,11 @@ mod grid;
 mod medium;
 mod pixel_map;
 mod quad;
-mod sheet;
 mod volumetric;
 
 pub use emission_absorption::{EmissionAbsorption, Layer, LayerError, LayerThresholds, MOST_LAYERS};
 pub use error::WarpError;
-pub use grid::{GridSettings, grid};
+pub use grid::{GridSettings, MOST_GRID_STEPS, grid};
 pub use medium::Medium;
 pub use pixel_map::{Landing, PixelMap};
 pub use quad::quad;

@@ -2,8 +2,9 @@
 
 use super::WarpError;
 use super::error::LONGEST_SIDE;
-use crate::view::{Frustum, Projection, View};
+use crate::view::{Frustum, PixelRect, Projection, View};
 use glam::{DMat3, DVec2, DVec3};
+use std::ops::Range;
 
 /// From pixel and depth in one perspective view to pixel and depth in another.
 ///
@@ -59,6 +60,20 @@ impl PixelMap {
     pub fn at(&self, position: DVec2, inverse_depth: f64) -> Option<Landing> {
         let h = self.matrix * position.extend(1.0) + inverse_depth * self.epipole;
         (h.z > 0.0).then(|| Landing { position: h.truncate() / h.z, inverse_depth: inverse_depth / h.z })
+    }
+
+    /// The pixels of the other view, of a size, that what is in some pixels and between two inverse depths can land in.
+    pub fn covered(&self, pixels: &PixelRect, inverse_depths: Range<f64>, size: [u32; 2]) -> PixelRect {
+        if pixels.columns.is_empty() || pixels.rows.is_empty() {
+            return PixelRect { columns: 0..0, rows: 0..0 };
+        }
+        // A pixel more on each side, into which interpolation fades.
+        let ends = |pixels: &Range<u32>| [f64::from(pixels.start) - 1.0, f64::from(pixels.end) + 1.0];
+        let corners = ends(&pixels.columns).map(|x| ends(&pixels.rows).map(|y| DVec2::new(x, y)));
+        let landings = corners.into_iter().flatten().flat_map(|corner| {
+            [inverse_depths.start, inverse_depths.end].map(|inverse_depth| self.at(corner, inverse_depth))
+        });
+        PixelRect::of_positions(landings.map(|landing| Some(landing?.position)), size)
     }
 }
 

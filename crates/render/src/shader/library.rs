@@ -93,6 +93,7 @@ files! {
     "lib/voxel_visible_value_gradient",
     "lib/voxels",
     "lib/walk",
+    "lib/warp",
     "skip/block_ranges",
     "skip/occupancy",
     "skip/sweep_columns",
@@ -113,4 +114,6 @@ files! {
     "stereo/sink_strips",
     "stereo/sink_tiles",
     "tiles",
+    "warp/grid",
+    "warp/quad",
 }

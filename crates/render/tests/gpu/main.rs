@@ -19,3 +19,4 @@ mod stereo_repair;
 mod targets;
 mod tolerance;
 mod upload;
+mod warp;

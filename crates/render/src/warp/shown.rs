@@ -1,0 +1,40 @@
+//! The picture that is warped.
+
+use crate::pacer::BAND_ROWS;
+use crate::renderer::Prepared;
+use crate::target::Target;
+use std::ops::Range;
+use wheatstone_core::view::{PixelRect, View};
+
+/// Nearest depth that is told from the eye itself, metres.
+const NEAREST_M: f64 = 1e-3;
+
+/// A whole picture, the view that it was cast from, and how near what it shows may be.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    pub(super) target: &'a Target,
+    pub(super) view: View,
+    /// Largest inverse depth, 1/m.
+    pub(super) nearest: f64,
+}
+
+impl<'a> Shown<'a> {
+    /// A picture that was cast from a view with some settings.
+    pub fn new(target: &'a Target, view: View, prepared: &Prepared) -> Self {
+        let depth_m = |corner| -view.view_from_world.transform_point3(corner).z;
+        let corners = prepared.parameters().visible_corners_world();
+        let nearest_m = corners.map(depth_m).into_iter().fold(f64::INFINITY, f64::min);
+        let near_m = view.projection.depth_range_m().0.max(NEAREST_M);
+        Self { target, view, nearest: 1.0 / nearest_m.max(near_m) }
+    }
+
+    /// The pixels that may not be blank.
+    pub(super) fn drawn(&self) -> PixelRect {
+        let pixels = |squares: &Range<u32>, side: u32| {
+            squares.start * BAND_ROWS..side.min(squares.end.saturating_mul(BAND_ROWS))
+        };
+        let [width, height] = self.target.size();
+        let drawn = &self.target.drawn;
+        PixelRect { columns: pixels(&drawn.columns, width), rows: pixels(&drawn.bands, height) }
+    }
+}
