@@ -7,7 +7,9 @@ import package::lib::view::{view};
 @group(2) @binding(2) var<storage, read_write> states: array<RayState>;
 
 fn begin_ray(ray: Ray, slot: u32) -> RayState {
-    if view.first_sample == 0u {
+    // Software Vulkan compiles a kernel anew for each value of a uniform that decides a branch alone; a slot that no ray has
+    // joins in.
+    if view.first_sample == u32(slot == 0xffffffffu) {
         return start_ray(ray);
     }
     return states[slot];
