@@ -1,5 +1,6 @@
 import package::lib::accumulate::{accumulate, finish_ray};
 import package::lib::ray::{ray_of_pixel};
+import package::lib::record::{begin_layers};
 import package::lib::resume::{begin_ray, keep_ray};
 import package::lib::target::{store};
 import package::lib::tiles::{LANES, pixel_of_lane, store_miss};
@@ -18,6 +19,7 @@ fn cast_rays(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
         return;
     }
     let slot = (pixel.y - view.first_row) * view.width + pixel.x;
+    begin_layers(pixel);
     var state = begin_ray(ray, slot);
     let end = min(ray.sample_count, view.first_sample + view.sample_limit);
     if state.is_finished == 0u && view.first_sample < end {

@@ -1,7 +1,7 @@
 //! The cast pass: which files make up its kernel, and its pipelines.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::groups::{Bindings, GroupLayouts};
+use crate::groups::{Bindings, GroupLayouts, LAYERED_RAY_BYTES, RAY_STATE_BYTES};
 use crate::leap::Leap;
 use crate::pipeline::{KernelFiles, build};
 use crate::renderer::Sources;
@@ -33,6 +33,7 @@ pub(crate) struct Variant {
     magnitude: &'static str,
     resume: &'static str,
     tiles: &'static str,
+    record: &'static str,
 }
 
 impl Variant {
@@ -81,12 +82,28 @@ impl Variant {
                 Tiles::All => TILES_ALL,
                 Tiles::Listed => TILES_LISTED,
             },
+            record: RECORD_NONE,
         }
+    }
+
+    /// The kernel that keeps layers of emission and absorption beside the picture.
+    pub(crate) fn with_layers(self) -> Self {
+        Self { record: RECORD_LAYERS, ..self }
+    }
+
+    pub(crate) fn keeps_layers(self) -> bool {
+        self.record == RECORD_LAYERS
     }
 
     /// The kernel that casts rays in several dispatches.
     pub(crate) fn in_parts(self) -> Self {
-        Self { resume: RESUME_PARTS, ..self }
+        let resume = if self.keeps_layers() { "lib/resume_layered_parts" } else { "lib/resume_parts" };
+        Self { resume, ..self }
+    }
+
+    /// Bytes of a ray between dispatches.
+    pub(crate) fn state_bytes(&self) -> u64 {
+        if self.keeps_layers() { LAYERED_RAY_BYTES } else { RAY_STATE_BYTES }
     }
 
     /// The kernel that casts listed tiles.
@@ -132,6 +149,7 @@ impl Variant {
                             magnitude,
                             resume,
                             tiles,
+                            record: RECORD_NONE,
                         });
                     }
                     let (accumulator, classifier) = ("lib/accumulate_first_hit", "lib/classify_isovalue");
@@ -146,6 +164,7 @@ impl Variant {
                         magnitude,
                         resume,
                         tiles,
+                        record: RECORD_NONE,
                     });
                 }
             }
@@ -164,6 +183,7 @@ impl Variant {
                     magnitude,
                     resume,
                     tiles,
+                    record: RECORD_NONE,
                 });
             }
         }
@@ -186,12 +206,20 @@ impl Variant {
         };
         let on_quads: Vec<Self> = all.iter().map(on_quads).collect();
         all.extend(on_quads);
+        let with_layers = |variant: &&Self| {
+            variant.accumulator == COMPOSITE
+                && variant.gradient != gradients[1]
+                && variant.tiles == TILES_LISTED
+        };
+        let with_layers: Vec<Self> =
+            all.iter().filter(with_layers).map(|variant| variant.with_layers()).collect();
+        all.extend(with_layers);
         let in_parts: Vec<Self> = all.iter().map(|variant| variant.in_parts()).collect();
         all.extend(in_parts);
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 12] {
+    fn choices(&self) -> [(&'static str, &'static str); 13] {
         let (cast_segments, join) = match self.accumulator {
             XRAY => ("lib/cast_integrals", "lib/join_sum"),
             _ => ("lib/cast_segments", "lib/join_over"),
@@ -207,6 +235,7 @@ impl Variant {
             ("lib/magnitude", self.magnitude),
             ("lib/resume", self.resume),
             ("lib/tiles", self.tiles),
+            ("lib/record", self.record),
             ("lib/cast_segments", cast_segments),
             ("lib/join", join),
         ]
@@ -218,9 +247,10 @@ const VOLUME_QUADS: &str = "lib/volume_quads";
 const MAGNITUDE_MAP: &str = "lib/magnitude_map";
 const MAGNITUDE_ESTIMATED: &str = "lib/magnitude_estimated";
 const RESUME_WHOLE: &str = "lib/resume_whole";
-const RESUME_PARTS: &str = "lib/resume_parts";
 const TILES_ALL: &str = "lib/tiles_all";
 const TILES_LISTED: &str = "lib/tiles_listed";
+const RECORD_NONE: &str = "lib/record_none";
+const RECORD_LAYERS: &str = "lib/record_layers";
 const SKIP_NONE: &str = "lib/skip_none";
 const SKIP_BLOCKS: &str = "lib/skip_blocks";
 const COMPOSITE: &str = "lib/accumulate_composite";
@@ -229,6 +259,9 @@ const XRAY: &str = "lib/accumulate_xray";
 /// Loop iterations that a step along a ray costs at most where each of a group of eight rays in lockstep waits while the
 /// others search or leap in turn, and those that end the loops.
 const LOCKSTEP_ITERATIONS: u32 = 11;
+
+/// Loop iterations that keeping layers adds to a sample.
+pub(crate) const ITERATIONS_OF_RECORDING: u32 = 2;
 
 /// Loop iterations that a sample costs at most. A loop of n counts n + 1: drivers count the one that ends it.
 pub(crate) fn iterations_per_sample(parameters: &CastParameters, leap: &Leap<'_>) -> u32 {
@@ -358,7 +391,7 @@ mod tests {
     fn every_kernel_is_valid_wgsl() {
         let mut validator = naga::valid::Validator::new(
             naga::valid::ValidationFlags::all(),
-            naga::valid::Capabilities::default(),
+            naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
         );
         let variants = Variant::all();
         let failures: Vec<String> = variants
@@ -380,7 +413,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 432);
+        assert_eq!(variants.len(), 512);
     }
 
     #[test]

@@ -8,6 +8,9 @@ use wheatstone_core::transfer::LUT_1D_ENTRIES;
 /// Bytes of a `RayState`.
 pub(crate) const RAY_STATE_BYTES: u64 = 48;
 
+/// Bytes of a `RayState` and an `OpenLayer`.
+pub(crate) const LAYERED_RAY_BYTES: u64 = 80;
+
 /// Layouts of the groups 0 to 2.
 #[derive(Debug)]
 pub(crate) struct GroupLayouts {
@@ -15,7 +18,7 @@ pub(crate) struct GroupLayouts {
     pub(crate) frame: wgpu::BindGroupLayout,
     /// Volume, tables and maps.
     pub(crate) volume: wgpu::BindGroupLayout,
-    /// Picture, rays under way and listed tiles.
+    /// Picture, rays under way, listed tiles and layers.
     pub(crate) target: wgpu::BindGroupLayout,
 }
 
@@ -37,8 +40,10 @@ impl GroupLayouts {
         let target = [
             storage_texture(wgpu::TextureFormat::Rgba32Float),
             storage_texture(wgpu::TextureFormat::Rgba32Float),
-            storage_buffer(RAY_STATE_BYTES),
+            // As many bytes as the variant's states take.
+            storage_buffer(0),
             storage_buffer(8),
+            storage_texture_array(wgpu::TextureFormat::Rgba32Uint),
         ];
         Self {
             frame: layout(device, "frame", &[uniform::<CastUniform>(), uniform::<ViewUniform>()]),
@@ -161,5 +166,13 @@ pub(crate) fn storage_texture(format: wgpu::TextureFormat) -> wgpu::BindingType 
         access: wgpu::StorageTextureAccess::WriteOnly,
         format,
         view_dimension: wgpu::TextureViewDimension::D2,
+    }
+}
+
+fn storage_texture_array(format: wgpu::TextureFormat) -> wgpu::BindingType {
+    wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
     }
 }

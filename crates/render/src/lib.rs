@@ -10,6 +10,7 @@ mod gradient_map;
 mod groups;
 mod kernel;
 mod layers;
+mod layers_error;
 mod leap;
 pub mod live;
 mod pacer;
@@ -30,6 +31,7 @@ pub mod warp;
 
 pub use gpu::{AdapterDescription, Gpu, GpuError};
 pub use gradient_map::GpuGradientMap;
+pub use layers_error::LayersError;
 pub use leap::Leap;
 pub use renderer::{Prepared, Renderer, Sources};
 pub use stereo::{Form, LayerFormat, PairError, PairMethod, PairReport, Quality};

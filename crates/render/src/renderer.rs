@@ -5,13 +5,14 @@ use crate::cast_pass::{self, Tiles, Variant, VariantPipelines};
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
+use crate::layers_error::LayersError;
 use crate::leap::{self, Leap};
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
 use crate::piece::Picture;
 use crate::squares::Squares;
 use crate::stamps::Stamps;
 use crate::stereo::{LayerFormat, LayerPass, PairTilePass, Quality, RepairPass, Repairs, StripPass};
-use crate::target::Target;
+use crate::target::{LAYERS, Target, target_texture};
 use crate::tile_pass::{self, TileList, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
@@ -21,9 +22,11 @@ use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::reference::Cast;
+use wheatstone_core::scene::Mode;
 use wheatstone_core::skip::BlockSize;
 use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
 use wheatstone_core::view::View;
+use wheatstone_core::warp::{LayerError, LayerThresholds};
 
 /// Most bytes of ray states between dispatches.
 pub(crate) const MOST_STATE_BYTES: u64 = 64 << 20;
@@ -48,6 +51,8 @@ pub struct Renderer {
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
+    /// Stands where a cast keeps no layers.
+    no_layers: wgpu::Texture,
     /// Stand where a cast keeps no rays and lists no tiles.
     pub(crate) unused: [wgpu::Buffer; 2],
     pacer: Pacer,
@@ -125,6 +130,7 @@ impl Renderer {
                 view_formats: &[],
             })
             .create_view(&wgpu::TextureViewDescriptor::default());
+        let no_layers = target_texture(gpu, "no layers", wgpu::TextureFormat::Rgba32Uint, [1, 1], 1);
         let unused =
             [(); 2].map(|()| storage(&gpu.device, "unused", RAY_STATE_BYTES, wgpu::BufferUsages::empty()));
         gpu.check()?;
@@ -143,6 +149,7 @@ impl Renderer {
             sampler,
             unused,
             no_map,
+            no_layers,
             pacer: Pacer::new(),
         })
     }
@@ -208,6 +215,42 @@ impl Renderer {
             view_uniform,
             frame,
             volume,
+        })
+    }
+
+    /// The same, cast with layers of emission and absorption beside the picture, four at most, into targets that have room for them:
+    /// what volumetric warps read (`Caster::cast_emission_absorption`).
+    ///
+    /// # Errors
+    /// Other modes than composites, more thresholds, a kernel that the driver refuses, no memory, a lost device.
+    pub fn with_layers(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        thresholds: &LayerThresholds,
+    ) -> Result<Prepared, LayersError> {
+        let mode = prepared.parameters.mode;
+        if mode != Mode::Composite {
+            return Err(LayersError::Layers(LayerError::Mode(mode)));
+        }
+        let opacities = thresholds.opacities();
+        if opacities.len() > LAYERS as usize {
+            return Err(LayersError::Count(opacities.len()));
+        }
+        let variant = prepared.variant.with_layers();
+        self.casts.pipeline(gpu, variant)?;
+        let cast_uniform = prepared.cast_uniform.with_layers(opacities);
+        let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
+        gpu.check()?;
+        Ok(Prepared {
+            parameters: prepared.parameters.clone(),
+            variant,
+            iterations_per_sample: prepared.iterations_per_sample + cast_pass::ITERATIONS_OF_RECORDING,
+            cast_uniform,
+            view_uniform,
+            frame,
+            volume: prepared.volume.clone(),
+            ..*prepared
         })
     }
 
@@ -343,6 +386,7 @@ impl Renderer {
         [states, tiles]: [&wgpu::Buffer; 2],
     ) -> wgpu::BindGroup {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let layers = target.layers.as_ref().unwrap_or(&self.no_layers);
         bind(
             &gpu.device,
             &self.groups.target,
@@ -351,6 +395,10 @@ impl Renderer {
                 wgpu::BindingResource::TextureView(&view(&target.depth)),
                 states.as_entire_binding(),
                 tiles.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&layers.create_view(&wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2Array),
+                    ..Default::default()
+                })),
             ],
         )
     }
@@ -372,7 +420,7 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         let parameters = &prepared.parameters;
         let [width, height] = view.size;
-        let state_row_bytes = u64::from(width) * RAY_STATE_BYTES;
+        let state_row_bytes = u64::from(width) * prepared.variant.state_bytes();
         let state_rows =
             ((MOST_STATE_BYTES / state_row_bytes) as u32).clamp(BAND_ROWS, height.max(BAND_ROWS));
         let most_samples = parameters.most_samples_per_ray();

@@ -9,6 +9,9 @@ use wheatstone_core::reference::{Cast, Reads};
 /// Bytes of a pixel of either texture.
 const PIXEL_BYTES: u32 = 16;
 
+/// Layers of emission and absorption per pixel: as many as fit the vectors of shaders.
+pub(crate) const LAYERS: u32 = 4;
+
 /// Zeros that are copied at once: more than the longest row of a picture.
 const ZERO_BYTES: u64 = 1 << 20;
 
@@ -33,6 +36,8 @@ pub struct Target {
     pub(crate) color: wgpu::Texture,
     /// Depth of the first hit in metres, samples taken, reads of the skip map, 1 where something was hit; 32-bit float.
     pub(crate) depth: wgpu::Texture,
+    /// What rays pass through, in the format of `lib/layer_words.wgsl`, if casts are to keep that.
+    pub(crate) layers: Option<wgpu::Texture>,
     /// What is not blank at most.
     pub(crate) drawn: Squares,
 }
@@ -44,26 +49,28 @@ impl Target {
     /// [`GpuError::PictureSize`] for an empty or too large picture, no memory, a lost device.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         check_size(size, gpu.capabilities().largest_2d_side)?;
-        let [width, height] = size;
-        let texture = |label, format| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::STORAGE_BINDING
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC
-                    | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
-        };
-        let color = texture("color target", wgpu::TextureFormat::Rgba32Float);
-        let depth = texture("depth target", wgpu::TextureFormat::Rgba32Float);
+        let [color, depth] = ["color target", "depth target"]
+            .map(|label| target_texture(gpu, label, wgpu::TextureFormat::Rgba32Float, size, 1));
         gpu.check()?;
-        Ok(Self { size, color, depth, drawn: Squares::default() })
+        Ok(Self { size, color, depth, layers: None, drawn: Squares::default() })
+    }
+
+    /// The same with room for the layers of emission and absorption that casts prepared for them keep.
+    ///
+    /// # Errors
+    /// As [`Target::new`].
+    pub fn with_layers(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        let target = Self::new(gpu, size)?;
+        let bytes = u64::from(PIXEL_BYTES * LAYERS) * u64::from(size[0]) * u64::from(size[1]);
+        let largest = gpu.capabilities().largest_texture;
+        if bytes > largest {
+            return Err(GpuError::Refused {
+                reason: format!("{bytes} bytes of layers; a texture holds {largest}"),
+            });
+        }
+        let layers = target_texture(gpu, "layers", wgpu::TextureFormat::Rgba32Uint, size, LAYERS);
+        gpu.check()?;
+        Ok(Self { layers: Some(layers), ..target })
     }
 
     /// The buffer of zeros that [`Target::blank`] copies.
@@ -100,7 +107,8 @@ impl Target {
         }
         let rows_at_once = ZERO_BYTES as u32 / padded_row_bytes;
         for first_row in rows.clone().step_by(rows_at_once as usize) {
-            for texture in [&self.color, &self.depth] {
+            let layers = self.layers.iter().flat_map(|layers| (0..LAYERS).map(move |z| (layers, z)));
+            for (texture, z) in [(&self.color, 0), (&self.depth, 0)].into_iter().chain(layers) {
                 encoder.copy_buffer_to_texture(
                     wgpu::TexelCopyBufferInfo {
                         buffer: zeros,
@@ -111,7 +119,7 @@ impl Target {
                         },
                     },
                     wgpu::TexelCopyTextureInfo {
-                        origin: wgpu::Origin3d { x: columns.start, y: first_row, z: 0 },
+                        origin: wgpu::Origin3d { x: columns.start, y: first_row, z },
                         ..texture.as_image_copy()
                     },
                     wgpu::Extent3d {
@@ -188,4 +196,27 @@ impl Target {
             .collect();
         Ok(pixels)
     }
+}
+
+/// A texture that casts write and later passes read.
+pub(crate) fn target_texture(
+    gpu: &Gpu,
+    label: &str,
+    format: wgpu::TextureFormat,
+    [width, height]: [u32; 2],
+    layers: u32,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
 }

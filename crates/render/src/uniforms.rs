@@ -45,7 +45,9 @@ pub(crate) struct CastUniform {
     pub(crate) shortest_run: f32,
     pub(crate) magnitude_scale: f32,
     pub(crate) direction_count: u32,
-    pub(crate) padding: [u32; 3],
+    pub(crate) layer_count: u32,
+    pub(crate) padding: [u32; 2],
+    pub(crate) layer_thresholds: [f32; 4],
     pub(crate) directions: [[f32; 4]; MAX_DIRECTIONS as usize],
 }
 
@@ -115,7 +117,19 @@ impl PairUniform {
     }
 }
 
+/// An opacity that no ray reaches.
+const NEVER_PASSED: f32 = 2.0;
+
 impl CastUniform {
+    /// The same for a cast that keeps layers between thresholds.
+    pub(crate) fn with_layers(self, thresholds: &[f32]) -> Self {
+        let mut layer_thresholds = [NEVER_PASSED; 4];
+        for (slot, &threshold) in layer_thresholds.iter_mut().zip(thresholds) {
+            *slot = threshold;
+        }
+        Self { layer_count: thresholds.len() as u32, layer_thresholds, ..self }
+    }
+
     /// The parameters of a cast over a volume whose texels map to normalised values by `scale` and `offset`.
     pub(crate) fn new(
         parameters: &CastParameters,
@@ -156,7 +170,9 @@ impl CastUniform {
             shortest_run: leap.shortest_run,
             magnitude_scale,
             direction_count: parameters.directions.len() as u32,
-            padding: [0; 3],
+            layer_count: 0,
+            padding: [0; 2],
+            layer_thresholds: [NEVER_PASSED; 4],
             directions,
         }
     }
@@ -253,6 +269,8 @@ mod tests {
                 shortest_run,
                 magnitude_scale,
                 direction_count,
+                layer_count,
+                layer_thresholds,
                 directions,
             ]
         );

@@ -55,6 +55,9 @@ pub enum WarpError {
         /// Most that are taken.
         most: u32,
     },
+    /// A picture that was cast without layers.
+    #[error("a picture without layers: only casts that keep them can be warped by volume")]
+    NoLayers,
     /// A step that leads nowhere.
     #[error("steps of {0} pixels: must be above 0 and finite")]
     StepLength(f64),

@@ -33,7 +33,11 @@ impl Default for VolumetricSettings {
 }
 
 impl VolumetricSettings {
-    fn check(&self) -> Result<(), WarpError> {
+    /// Refuses numbers of steps and lengths that are none.
+    ///
+    /// # Errors
+    /// Settings out of range.
+    pub fn check(&self) -> Result<(), WarpError> {
         if !(1..=MOST_STEPS).contains(&self.most_steps) {
             return Err(WarpError::Steps { steps: self.most_steps, most: MOST_STEPS });
         }

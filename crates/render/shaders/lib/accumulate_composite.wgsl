@@ -2,6 +2,7 @@ import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{SEARCHES, blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
 import package::lib::ray_state::{RayState, STRETCH};
+import package::lib::record::{end_layer, record};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::volume::{value_at};
 
@@ -34,7 +35,9 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
                 i++;
             }
             if is_found {
-                state = blend(ray, i, value, state);
+                let before = state;
+                state = blend(ray, i, value, before);
+                record(ray, i, before, state);
             }
             state.scalar = value;
             i++;
@@ -45,5 +48,6 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
         }
         state.samples += i - run.begin;
     }
+    end_layer(state);
     return state;
 }

@@ -52,6 +52,10 @@ struct CastParameters {
     magnitude_scale: f32,
     // Directions of directional shading in use.
     direction_count: u32,
+    // Layers of emission and absorption that are kept of each ray at most.
+    layer_count: u32,
+    // Opacities at which they end; above 1 where there are none.
+    layer_thresholds: vec4f,
     // Unit directions, metric space; their absolute components are the light's colour.
     directions: array<vec4f, 64>,
 }

@@ -23,12 +23,6 @@ struct Warp {
 // Depth of the first hit in metres, ..., 1 where something was hit.
 @group(0) @binding(2) var depth_source: texture_2d<f32>;
 
-// A triangle over the whole picture.
-@vertex
-fn cover_picture(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
-    return vec4f(select(-1.0, 3.0, corner == 1u), select(-1.0, 3.0, corner == 2u), 0.0, 1.0);
-}
-
 // Colour of a pixel; transparent outside of the picture.
 fn color_at(pixel: vec2f) -> vec4f {
     let is_inside = all(pixel >= vec2f(0.0)) && all(pixel < warp.size);

@@ -1,4 +1,5 @@
-import package::lib::warp::{color_at, cover_picture, depth_source, warp};
+import package::lib::cover_picture::{cover_picture};
+import package::lib::warp::{color_at, depth_source, warp};
 
 // The picture as a surface of its first hits (VR 5.3.2): `core::warp::grid`.
 

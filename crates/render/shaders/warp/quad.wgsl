@@ -1,4 +1,5 @@
-import package::lib::warp::{color_at, cover_picture, warp};
+import package::lib::cover_picture::{cover_picture};
+import package::lib::warp::{color_at, warp};
 
 // The picture on the plane at infinity (VR 5.3.1).
 @fragment

@@ -7,7 +7,7 @@ use super::piece::Piece;
 use super::spares::Spares;
 use super::wanted::Wanted;
 use crate::gpu::{Gpu, GpuError};
-use crate::groups::{Bindings, RAY_STATE_BYTES};
+use crate::groups::Bindings;
 use crate::pacer::{BAND_ROWS, spreading_stride};
 use crate::piece::Picture;
 use crate::renderer::{Prepared, Renderer};
@@ -56,7 +56,8 @@ impl UnderWay {
     ) -> Result<Self, GpuError> {
         let [width, _] = wanted.size();
         let cell_rows = cells.grid().rect(0).rows.end.next_multiple_of(BAND_ROWS);
-        let states = spares.states(gpu, u64::from(width) * u64::from(cell_rows) * RAY_STATE_BYTES);
+        let states =
+            spares.states(gpu, u64::from(width) * u64::from(cell_rows) * prepared.variant.state_bytes());
         let begin = |view: View| {
             let mut target = spares.target(gpu, view.size)?;
             let list =

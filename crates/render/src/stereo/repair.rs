@@ -6,7 +6,7 @@ use super::strips::merged_workgroups;
 use crate::buffers::storage;
 use crate::cast_pass::{self, Workgroups};
 use crate::gpu::{Gpu, GpuError};
-use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind, layout, storage_buffer};
+use crate::groups::{Bindings, GroupLayouts, bind, layout, storage_buffer};
 use crate::pacer::sample_limit;
 use crate::pipeline::{KernelFiles, build};
 use crate::renderer::{MOST_STATE_BYTES, Renderer};
@@ -155,7 +155,8 @@ impl Renderer {
         let most_samples = prepared.parameters.most_samples_per_ray();
         let limit = sample_limit(most_samples, prepared.iterations_per_sample, 1.0);
         let is_whole = limit == u32::MAX;
-        let state_bytes = if is_whole { 1 } else { u64::from(width) * u64::from(height) } * RAY_STATE_BYTES;
+        let rays = if is_whole { 1 } else { u64::from(width) * u64::from(height) };
+        let state_bytes = rays * prepared.variant.state_bytes();
         if state_bytes > MOST_STATE_BYTES {
             return Err(PairError::LongRays { samples: most_samples });
         }

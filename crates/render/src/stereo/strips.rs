@@ -261,6 +261,7 @@ mod tests {
             ("lib/segment_sink", "stereo/sink_strips"),
             ("lib/accumulate", "lib/accumulate_composite"),
             ("lib/classify", "lib/classify_value"),
+            ("lib/record", "lib/record_none"),
             ("lib/shade", "lib/shade_none"),
             ("lib/skip", "lib/skip_none"),
             ("lib/volume", "lib/volume_filtered"),

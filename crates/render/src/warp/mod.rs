@@ -4,12 +4,20 @@
 //! the shown one can cover; nothing waits for the device. They write to textures of a format that is chosen once: what a display
 //! takes, or half floats.
 
+mod depths;
+mod flat;
+mod flat_uniform;
+mod layers;
 mod pass;
 mod picture;
-mod pipelines;
 mod shown;
-mod uniform;
+mod volumetric;
+mod volumetric_uniform;
 
-pub use pass::Warps;
+#[cfg(test)]
+pub(crate) use depths::kernel_files;
+pub use depths::{DepthPass, LayerDepths};
+pub use flat::Warps;
 pub use picture::Picture;
 pub use shown::Shown;
+pub use volumetric::VolumetricWarps;

@@ -1,116 +1,82 @@
-//! The passes, and what they are encoded with.
+//! Render passes of warps: a triangle over the picture, and what each of its pixels shows.
 
-use super::Shown;
-use super::pipelines::{build, layout};
-use super::uniform::WarpUniform;
-use crate::gpu::{Gpu, GpuError};
-use crate::groups::bind;
-use wgpu::util::DeviceExt as _;
+use crate::gpu::GpuError;
+use crate::groups::uniform;
+use crate::shader::compose;
 use wheatstone_core::view::{PixelRect, View};
-use wheatstone_core::warp::{GridSettings, PixelMap, WarpError};
+use wheatstone_core::warp::WarpError;
 
-/// Warps to pictures of a format.
-#[derive(Debug)]
-pub struct Warps {
+/// A texture of floats that is read texel by texel.
+pub(super) const TEXTURE: wgpu::BindingType = wgpu::BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    view_dimension: wgpu::TextureViewDimension::D2,
+    multisampled: false,
+};
+
+/// What pipelines read: a uniform buffer, then textures.
+pub(super) fn layout<Uniform>(
+    device: &wgpu::Device,
+    textures: &[wgpu::BindingType],
+) -> wgpu::BindGroupLayout {
+    let types = std::iter::once(uniform::<Uniform>()).chain(textures.iter().copied());
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        })
+        .collect();
+    device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("warp"), entries: &entries })
+}
+
+/// Builds the pipeline of a file; what the driver says against it comes with the next [`Gpu::check`](crate::Gpu::check).
+///
+/// # Errors
+/// [`GpuError::Refused`] for a file that makes no module.
+pub(super) fn build(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    (root, entry_point): (&'static str, &'static str),
     format: wgpu::TextureFormat,
-    layout: wgpu::BindGroupLayout,
-    quad: wgpu::RenderPipeline,
-    grid: wgpu::RenderPipeline,
-}
-
-impl Warps {
-    /// Builds the pipelines for pictures of a colour format that can be rendered to.
-    ///
-    /// # Errors
-    /// A kernel or format that the driver refuses, a lost device.
-    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let warps = Self::build(&gpu.device, format)?;
-        gpu.check()?;
-        Ok(warps)
-    }
-
-    fn build(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let layout = layout::<WarpUniform>(device, 2);
-        let quad = build(device, &layout, ("warp/quad", "warp_quad"), format)?;
-        let grid = build(device, &layout, ("warp/grid", "warp_grid"), format)?;
-        Ok(Self { format, layout, quad, grid })
-    }
-
-    /// The format of the pictures.
-    pub fn format(&self) -> wgpu::TextureFormat {
-        self.format
-    }
-
-    /// Encodes `wheatstone_core::warp::quad` into a picture of the wanted view's size and the format.
-    ///
-    /// # Errors
-    /// Views or a picture that do not go together.
-    pub fn quad(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        shown: &Shown<'_>,
-        wanted: &View,
-        into: &wgpu::TextureView,
-    ) -> Result<(), WarpError> {
-        let covered = covered(shown, wanted, 0.0)?;
-        let group = self.bind(gpu, shown, wanted, GridSettings::default())?;
-        draw(encoder, &self.quad, &group, &covered, into, wanted)
-    }
-
-    /// Encodes `wheatstone_core::warp::grid` into a picture of the wanted view's size and the format.
-    ///
-    /// # Errors
-    /// Views, settings or a picture that do not go together.
-    pub fn grid(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        shown: &Shown<'_>,
-        wanted: &View,
-        settings: GridSettings,
-        into: &wgpu::TextureView,
-    ) -> Result<(), WarpError> {
-        settings.check()?;
-        let covered = covered(shown, wanted, shown.nearest)?;
-        let group = self.bind(gpu, shown, wanted, settings)?;
-        draw(encoder, &self.grid, &group, &covered, into, wanted)
-    }
-
-    fn bind(
-        &self,
-        gpu: &Gpu,
-        shown: &Shown<'_>,
-        wanted: &View,
-        settings: GridSettings,
-    ) -> Result<wgpu::BindGroup, WarpError> {
-        let map = PixelMap::between(wanted, &shown.view)?;
-        let uniform = WarpUniform::new(&map, shown, wanted, settings);
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("warp"),
-            contents: bytemuck::bytes_of(&uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let [color, depth] = [&shown.target.color, &shown.target.depth]
-            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-        let resources = [
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&color),
-            wgpu::BindingResource::TextureView(&depth),
-        ];
-        Ok(bind(&gpu.device, &self.layout, &resources))
-    }
-}
-
-/// The wanted pixels that may show something of a picture whose pixels are at inverse depths from 0 to another, 1/m.
-fn covered(shown: &Shown<'_>, wanted: &View, nearest: f64) -> Result<PixelRect, WarpError> {
-    WarpError::unless_of_size(shown.target.size(), &shown.view)?;
-    let wanted_from_shown = PixelMap::between(&shown.view, wanted)?;
-    Ok(wanted_from_shown.covered(&shown.drawn(), 0.0..nearest, wanted.size))
+) -> Result<wgpu::RenderPipeline, GpuError> {
+    let source = compose(root, &[]).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(root),
+        source: wgpu::ShaderSource::Wgsl(source.text.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(root),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    Ok(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(root),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("cover_picture"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
 }
 
 /// Encodes a pass over some pixels; the others become transparent.
-fn draw(
+pub(super) fn draw(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
     group: &wgpu::BindGroup,
@@ -141,21 +107,4 @@ fn draw(
         pass.draw(0..3, 0..1);
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_pipelines_build_on_the_noop_device() {
-        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        for format in [wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Bgra8UnormSrgb] {
-            Warps::build(&device, format).unwrap();
-        }
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            panic!("{error}");
-        }
-    }
 }

@@ -5,6 +5,7 @@ use crate::renderer::Prepared;
 use crate::target::Target;
 use std::ops::Range;
 use wheatstone_core::view::{PixelRect, View};
+use wheatstone_core::warp::{PixelMap, WarpError};
 
 /// Nearest depth that is told from the eye itself, metres.
 const NEAREST_M: f64 = 1e-3;
@@ -16,6 +17,8 @@ pub struct Shown<'a> {
     pub(super) view: View,
     /// Largest inverse depth, 1/m.
     pub(super) nearest: f64,
+    /// Least, 1/m.
+    pub(super) furthest: f64,
 }
 
 impl<'a> Shown<'a> {
@@ -23,13 +26,26 @@ impl<'a> Shown<'a> {
     pub fn new(target: &'a Target, view: View, prepared: &Prepared) -> Self {
         let depth_m = |corner| -view.view_from_world.transform_point3(corner).z;
         let corners = prepared.parameters().visible_corners_world();
-        let nearest_m = corners.map(depth_m).into_iter().fold(f64::INFINITY, f64::min);
+        let (nearest_m, furthest_m) = corners
+            .map(depth_m)
+            .into_iter()
+            .fold((f64::INFINITY, 0.0), |(near, far), depth_m| (depth_m.min(near), depth_m.max(far)));
         let near_m = view.projection.depth_range_m().0.max(NEAREST_M);
-        Self { target, view, nearest: 1.0 / nearest_m.max(near_m) }
+        Self { target, view, nearest: 1.0 / nearest_m.max(near_m), furthest: 1.0 / furthest_m.max(near_m) }
+    }
+
+    /// The wanted pixels that may show something of the picture between two inverse depths, 1/m.
+    ///
+    /// # Errors
+    /// Views that do not go together, or with the picture.
+    pub(super) fn covered(&self, wanted: &View, inverse_depths: Range<f64>) -> Result<PixelRect, WarpError> {
+        WarpError::unless_of_size(self.target.size(), &self.view)?;
+        let wanted_from_shown = PixelMap::between(&self.view, wanted)?;
+        Ok(wanted_from_shown.covered(&self.drawn(), inverse_depths, wanted.size))
     }
 
     /// The pixels that may not be blank.
-    pub(super) fn drawn(&self) -> PixelRect {
+    fn drawn(&self) -> PixelRect {
         let pixels = |squares: &Range<u32>, side: u32| {
             squares.start * BAND_ROWS..side.min(squares.end.saturating_mul(BAND_ROWS))
         };

@@ -6,6 +6,7 @@
 
 mod device;
 mod errors;
+mod layers;
 mod leap;
 mod live;
 mod pairs;
@@ -19,4 +20,5 @@ mod stereo_repair;
 mod targets;
 mod tolerance;
 mod upload;
+mod volumetric;
 mod warp;

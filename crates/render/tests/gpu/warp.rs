@@ -47,12 +47,12 @@ impl Scene {
     }
 }
 
-fn front() -> View {
+pub(crate) fn front() -> View {
     look(DVec3::new(0.6, 0.4, 1.2), DVec3::ZERO, perspective(0.9, SIZE), SIZE)
 }
 
 /// Views of an eye moved and turned in its own axes, some of another size and window.
-fn wanted(random: &mut fastrand::Rng, view: &View) -> View {
+pub(crate) fn wanted(random: &mut fastrand::Rng, view: &View) -> View {
     let mut within = |most: f64| most * (2.0 * random.f64() - 1.0);
     let by_m = DVec3::new(within(0.06), within(0.06), within(0.1));
     let turn = DMat3::from_rotation_y(within(0.2)) * DMat3::from_rotation_z(within(0.2));
@@ -67,32 +67,33 @@ fn wanted(random: &mut fastrand::Rng, view: &View) -> View {
 }
 
 /// A warp on the device, read back.
-fn warped(
+pub(crate) fn warped(
     gpu: &Gpu,
     wanted: &View,
-    encode: impl FnOnce(&Warps, &mut wgpu::CommandEncoder, &wgpu::TextureView) -> Result<(), WarpError>,
+    encode: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::TextureView) -> Result<(), WarpError>,
 ) -> Result<Image, WarpError> {
-    let warps = Warps::new(gpu, Picture::FORMAT).unwrap();
     let picture = Picture::new(gpu, wanted.size).unwrap();
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encode(&warps, &mut encoder, picture.view())?;
+    encode(&mut encoder, picture.view())?;
     gpu.queue().submit([encoder.finish()]);
     Ok(picture.read(gpu).unwrap())
 }
 
+fn warps(gpu: &Gpu) -> Warps {
+    Warps::new(gpu, Picture::FORMAT).unwrap()
+}
+
 fn quad(gpu: &Gpu, scene: &Scene, wanted: &View) -> Result<Image, WarpError> {
-    warped(gpu, wanted, |warps, encoder, into| warps.quad(gpu, encoder, &scene.shown(), wanted, into))
+    warped(gpu, wanted, |encoder, into| warps(gpu).quad(gpu, encoder, &scene.shown(), wanted, into))
 }
 
 fn grid(gpu: &Gpu, scene: &Scene, wanted: &View) -> Result<Image, WarpError> {
     let settings = GridSettings::default();
-    warped(gpu, wanted, |warps, encoder, into| {
-        warps.grid(gpu, encoder, &scene.shown(), wanted, settings, into)
-    })
+    warped(gpu, wanted, |encoder, into| warps(gpu).grid(gpu, encoder, &scene.shown(), wanted, settings, into))
 }
 
 /// Largest difference of a channel, and share of the pixels that are further apart than rounding allows.
-fn differences(a: &Image, b: &Image) -> (f32, f64) {
+pub(crate) fn differences(a: &Image, b: &Image) -> (f32, f64) {
     let of_pixels: Vec<f32> = a
         .color
         .iter()
@@ -103,7 +104,7 @@ fn differences(a: &Image, b: &Image) -> (f32, f64) {
     (of_pixels.iter().copied().fold(0.0, f32::max), others as f64 / of_pixels.len() as f64)
 }
 
-fn dssim(a: &Image, b: &Image) -> f64 {
+pub(crate) fn dssim(a: &Image, b: &Image) -> f64 {
     compare(&a.over_background([0.0; 3]), &b.over_background([0.0; 3])).unwrap().dssim()
 }
 
@@ -176,8 +177,8 @@ fn what_does_not_go_together_is_refused() {
             assert!(matches!(warp(gpu, &scene, &spoiled), Err(WarpError::View(_))));
             assert!(matches!(warp(gpu, &other, &front()), Err(WarpError::Mismatch { .. })));
         }
-        let into_another = warped(gpu, &View { size: [9, 7], ..front() }, |warps, encoder, into| {
-            warps.quad(gpu, encoder, &scene.shown(), &front(), into)
+        let into_another = warped(gpu, &View { size: [9, 7], ..front() }, |encoder, into| {
+            warps(gpu).quad(gpu, encoder, &scene.shown(), &front(), into)
         });
         assert!(matches!(into_another, Err(WarpError::Mismatch { .. })));
     });

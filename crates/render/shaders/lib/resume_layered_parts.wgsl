@@ -1,0 +1,25 @@
+import package::lib::accumulate::{start_ray};
+import package::lib::ray::{Ray};
+import package::lib::ray_state::{RayState};
+import package::lib::record::{OpenLayer, open_layer};
+import package::lib::view::{view};
+
+// Rays of a piece that are cast in several dispatches and cut into layers, row by row.
+@group(2) @binding(2) var<storage, read_write> states: array<LayeredRay>;
+
+struct LayeredRay {
+    state: RayState,
+    layer: OpenLayer,
+}
+
+fn begin_ray(ray: Ray, slot: u32) -> RayState {
+    if view.first_sample == 0u {
+        return start_ray(ray);
+    }
+    open_layer = states[slot].layer;
+    return states[slot].state;
+}
+
+fn keep_ray(slot: u32, state: RayState) {
+    states[slot] = LayeredRay(state, open_layer);
+}

@@ -1,0 +1,27 @@
+import package::lib::depth_range::{NOTHING, joined};
+
+// Nearest and furthest depth of what is in the layers of each tile: `core::warp::DepthTiles`.
+
+// Side of a tile, pixels.
+const SIDE: u32 = 16u;
+
+@group(0) @binding(0) var layers: texture_2d_array<u32>;
+// Depths from and to, metres.
+@group(0) @binding(1) var tiles: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn find_depths(@builtin(global_invocation_id) tile: vec3u) {
+    let size = textureDimensions(layers);
+    let first = tile.xy * SIDE;
+    var depths_m = NOTHING;
+    for (var y = first.y; y < min(first.y + SIDE, size.y); y++) {
+        for (var x = first.x; x < min(first.x + SIDE, size.x); x++) {
+            for (var layer = 0u; layer < textureNumLayers(layers); layer++) {
+                let words = textureLoad(layers, vec2u(x, y), layer, 0);
+                let own_m = bitcast<vec2f>(words.xy);
+                depths_m = select(depths_m, joined(depths_m, own_m), own_m.x < own_m.y);
+            }
+        }
+    }
+    textureStore(tiles, tile.xy, vec4f(depths_m, 0.0, 0.0));
+}

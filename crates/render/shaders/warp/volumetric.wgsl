@@ -1,0 +1,210 @@
+import package::lib::column::{Column, SATURATED_ALPHA, TINY, agree, column_at, reversed};
+import package::lib::cover_picture::{cover_picture};
+import package::lib::depth_range::{NOTHING, joined};
+import package::lib::layered_warp::{range, tiles, warp};
+
+// Novel rays through layers of emission and absorption (VR Alg. 8): `core::warp::volumetric`.
+
+// Times that the depths which a ray may find something at are narrowed to those of the tiles that it passes.
+const NARROWINGS: u32 = 2u;
+
+// Side of a tile, pixels.
+const TILE_SIDE: f32 = 16.0;
+
+// A ray of the wanted view: at a depth s of that view, metres, it is at the homogeneous pixel `from_eye + s * per_m` of the
+// shown view, whose z is the depth in the shown view.
+struct NovelRay {
+    from_eye: vec3f,
+    per_m: vec3f,
+    // Length per metre of depth.
+    metres_per_depth: f32,
+}
+
+// Where a ray is: pixel and depth in the shown view, depth in the wanted view.
+struct Place {
+    pixel: vec2f,
+    shown_m: f32,
+    wanted_m: f32,
+}
+
+// Light of a novel ray, gathered front to back.
+struct Light {
+    rgb: vec3f,
+    transmittance: f32,
+}
+
+@fragment
+fn warp_volumetric(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let at = position.xy;
+    let direction = warp.wanted_direction + at.x * warp.wanted_dx + at.y * warp.wanted_dy;
+    let ray = NovelRay(warp.epipole, warp.matrix * vec3f(at, 1.0), length(direction));
+    let light = light_along(ray);
+    return vec4f(light.rgb, 1.0 - light.transmittance);
+}
+
+fn light_along(ray: NovelRay) -> Light {
+    var light = Light(vec3f(0.0), 1.0);
+    let stretch_m = stretch_of(ray);
+    let first = place_at(ray, stretch_m.x);
+    let last = place_at(ray, stretch_m.y);
+    let length_px = distance(first.pixel, last.pixel);
+    let steps = select(0.0, clamp(ceil(length_px / warp.step_px), 1.0, warp.most_steps), stretch_m.x < stretch_m.y);
+    let step_px = length_px / max(steps, 1.0);
+    let goes_forward = first.shown_m <= last.shown_m;
+    var here = first;
+    var column = column_along(here, goes_forward);
+    var step = 0.0;
+    while step < steps && light.transmittance > 1.0 - SATURATED_ALPHA {
+        step += 1.0;
+        let there = place_at(ray, between(first, last, step / steps));
+        let next = column_along(there, goes_forward);
+        light = through_step(light, here, there, column, next, step_px, ray.metres_per_depth);
+        here = there;
+        column = next;
+    }
+    return light;
+}
+
+fn column_along(place: Place, goes_forward: bool) -> Column {
+    let direction = warp.shown_direction + place.pixel.x * warp.shown_dx + place.pixel.y * warp.shown_dy;
+    var column = column_at(place.pixel, length(direction));
+    if !goes_forward {
+        column = reversed(column);
+    }
+    return column;
+}
+
+fn place_at(ray: NovelRay, wanted_m: f32) -> Place {
+    let point = ray.from_eye + wanted_m * ray.per_m;
+    return Place(point.xy / point.z, point.z, wanted_m);
+}
+
+// Depth in the wanted view at a fraction of the way in the shown picture, metres.
+fn between(first: Place, last: Place, fraction: f32) -> f32 {
+    let a = (1.0 - fraction) * last.shown_m;
+    let b = fraction * first.shown_m;
+    return (a * first.wanted_m + b * last.wanted_m) / (a + b);
+}
+
+// The depths in the wanted view between which a ray may find something; none if the first is not less.
+fn stretch_of(ray: NovelRay) -> vec2f {
+    var clipped_m = clipped(ray, warp.wanted_m, textureLoad(range, vec2u(0u), 0).xy);
+    for (var i = 0u; i < NARROWINGS; i++) {
+        let around_m = depths_around(place_at(ray, clipped_m.x).pixel, place_at(ray, clipped_m.y).pixel, clipped_m);
+        clipped_m = clipped(ray, clipped_m, around_m);
+    }
+    return clipped_m;
+}
+
+// Depths of the tiles about two positions.
+fn depths_around(first: vec2f, last: vec2f, clipped_m: vec2f) -> vec2f {
+    let most = vec2f(textureDimensions(tiles)) - 1.0;
+    // A pixel more on each side, which interpolation reads.
+    let low = vec2i(clamp(floor((min(first, last) - 1.0) / TILE_SIDE), vec2f(0.0), most));
+    let high = vec2i(clamp(floor((max(first, last) + 1.0) / TILE_SIDE), vec2f(0.0), most));
+    var depths_m = NOTHING;
+    let end = select(low.y, high.y + 1, clipped_m.x < clipped_m.y);
+    for (var y = low.y; y < end; y++) {
+        for (var x = low.x; x <= high.x; x++) {
+            depths_m = joined(depths_m, textureLoad(tiles, vec2i(x, y), 0).xy);
+        }
+    }
+    return depths_m;
+}
+
+// The part of an interval of depths within the picture and within a range of depths of the shown view.
+fn clipped(ray: NovelRay, depths_m: vec2f, shown_m: vec2f) -> vec2f {
+    let from_eye = ray.from_eye;
+    let per_m = ray.per_m;
+    var part = within(depths_m, from_eye.x, per_m.x);
+    part = within(part, warp.size.x * from_eye.z - from_eye.x, warp.size.x * per_m.z - per_m.x);
+    part = within(part, from_eye.y, per_m.y);
+    part = within(part, warp.size.y * from_eye.z - from_eye.y, warp.size.y * per_m.z - per_m.y);
+    part = within(part, from_eye.z - shown_m.x, per_m.z);
+    return within(part, shown_m.y - from_eye.z, -per_m.z);
+}
+
+// The part of an interval in which `a + b * s` is not negative.
+fn within(part: vec2f, a: f32, b: f32) -> vec2f {
+    let root = -a / select(b, TINY, b == 0.0);
+    let above = vec2f(max(part.x, root), part.y);
+    let below = vec2f(part.x, min(part.y, root));
+    let all = select(part, part.xx, a < 0.0);
+    return select(select(all, below, b < 0.0), above, b > 0.0);
+}
+
+// Composites the layers that a step crosses. Where the columns agree on where a layer is, it is a sheet from one to the other;
+// else half a step is in each.
+fn through_step(
+    before: Light,
+    here: Place,
+    there: Place,
+    column: Column,
+    next: Column,
+    step_px: f32,
+    metres_per_depth: f32,
+) -> Light {
+    let is_clear = column.a <= vec4f(0.0);
+    let next_is_clear = next.a <= vec4f(0.0);
+    let start_m = select(column.start_m, next.start_m, is_clear);
+    let end_m = select(column.end_m, next.end_m, is_clear);
+    let next_start_m = select(next.start_m, column.start_m, next_is_clear);
+    let next_end_m = select(next.end_m, column.end_m, next_is_clear);
+    let is_sheet = agree(start_m, end_m, next_start_m, next_end_m, step_px);
+    let share = select(vec4f(0.0), vec4f(1.0), is_sheet);
+    // Of the first sheet: from this column to the next, or of this column alone.
+    let to_start_m = select(start_m, next_start_m, is_sheet);
+    let to_end_m = select(end_m, next_end_m, is_sheet);
+    let absorption = mix(column.absorption_per_m, 0.5 * (column.absorption_per_m + next.absorption_per_m), share);
+    let step_m = (there.wanted_m - here.wanted_m) * metres_per_depth;
+    let first_part = part_inside(here, there, start_m, end_m, to_start_m, to_end_m, vec4f(0.0), 0.5 + 0.5 * share);
+    let second_part =
+        part_inside(here, there, next_start_m, next_end_m, next_start_m, next_end_m, 0.5 + 0.5 * share, vec4f(1.0));
+    let first = exp(-absorption * first_part * step_m);
+    let second = exp(-next.absorption_per_m * second_part * step_m);
+    let a = max(column.a + share * next.a, vec4f(TINY));
+    let r = (column.r + share * next.r) / a;
+    let g = (column.g + share * next.g) / a;
+    let b = (column.b + share * next.b) / a;
+    let next_a = max(next.a, vec4f(TINY));
+    var light = before;
+    light = add(light, first.x, second.x, vec3f(r.x, g.x, b.x), vec3f(next.r.x, next.g.x, next.b.x) / next_a.x);
+    light = add(light, first.y, second.y, vec3f(r.y, g.y, b.y), vec3f(next.r.y, next.g.y, next.b.y) / next_a.y);
+    light = add(light, first.z, second.z, vec3f(r.z, g.z, b.z), vec3f(next.r.z, next.g.z, next.b.z) / next_a.z);
+    return add(light, first.w, second.w, vec3f(r.w, g.w, b.w), vec3f(next.r.w, next.g.w, next.b.w) / next_a.w);
+}
+
+// Adds two stretches of a layer, by what passes them.
+fn add(before: Light, first: f32, second: f32, rgb: vec3f, next_rgb: vec3f) -> Light {
+    let after = before.transmittance * first;
+    let color = before.rgb + (before.transmittance - after) * rgb + (after * (1.0 - second)) * next_rgb;
+    return Light(color, after * second);
+}
+
+// How much of a step, from one share of it to another, is in sheets.
+fn part_inside(
+    here: Place,
+    there: Place,
+    start_m: vec4f,
+    end_m: vec4f,
+    to_start_m: vec4f,
+    to_end_m: vec4f,
+    first: vec4f,
+    last: vec4f,
+) -> vec4f {
+    let below = here.shown_m - start_m;
+    let below_slope = there.shown_m - to_start_m - below;
+    let above = end_m - here.shown_m;
+    let above_slope = to_end_m - there.shown_m - above;
+    var begin = first;
+    var end = last;
+    let below_root = -below / select(below_slope, vec4f(TINY), below_slope == vec4f(0.0));
+    let above_root = -above / select(above_slope, vec4f(TINY), above_slope == vec4f(0.0));
+    begin = select(begin, max(begin, below_root), below_slope > vec4f(0.0));
+    end = select(end, min(end, below_root), below_slope < vec4f(0.0));
+    end = select(end, begin, below_slope == vec4f(0.0) & below < vec4f(0.0));
+    begin = select(begin, max(begin, above_root), above_slope > vec4f(0.0));
+    end = select(end, min(end, above_root), above_slope < vec4f(0.0));
+    end = select(end, begin, above_slope == vec4f(0.0) & above < vec4f(0.0));
+    return max(end - begin, vec4f(0.0));
+}

@@ -1,0 +1,120 @@
+//! Quad and grid.
+
+use super::Shown;
+use super::flat_uniform::WarpUniform;
+use super::pass::{TEXTURE, build, draw, layout};
+use crate::gpu::{Gpu, GpuError};
+use crate::groups::bind;
+use wgpu::util::DeviceExt as _;
+use wheatstone_core::view::View;
+use wheatstone_core::warp::{GridSettings, PixelMap, WarpError};
+
+/// Warps to pictures of a format.
+#[derive(Debug)]
+pub struct Warps {
+    format: wgpu::TextureFormat,
+    layout: wgpu::BindGroupLayout,
+    quad: wgpu::RenderPipeline,
+    grid: wgpu::RenderPipeline,
+}
+
+impl Warps {
+    /// Builds the pipelines for pictures of a colour format that can be rendered to.
+    ///
+    /// # Errors
+    /// A kernel or format that the driver refuses, a lost device.
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        let warps = Self::build(&gpu.device, format)?;
+        gpu.check()?;
+        Ok(warps)
+    }
+
+    fn build(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        let layout = layout::<WarpUniform>(device, &[TEXTURE; 2]);
+        let quad = build(device, &layout, ("warp/quad", "warp_quad"), format)?;
+        let grid = build(device, &layout, ("warp/grid", "warp_grid"), format)?;
+        Ok(Self { format, layout, quad, grid })
+    }
+
+    /// The format of the pictures.
+    pub fn format(&self) -> wgpu::TextureFormat {
+        self.format
+    }
+
+    /// Encodes `wheatstone_core::warp::quad` into a picture of the wanted view's size and the format.
+    ///
+    /// # Errors
+    /// Views or a picture that do not go together.
+    pub fn quad(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        shown: &Shown<'_>,
+        wanted: &View,
+        into: &wgpu::TextureView,
+    ) -> Result<(), WarpError> {
+        let covered = shown.covered(wanted, 0.0..0.0)?;
+        let group = self.bind(gpu, shown, wanted, GridSettings::default())?;
+        draw(encoder, &self.quad, &group, &covered, into, wanted)
+    }
+
+    /// Encodes `wheatstone_core::warp::grid` into a picture of the wanted view's size and the format.
+    ///
+    /// # Errors
+    /// Views, settings or a picture that do not go together.
+    pub fn grid(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        shown: &Shown<'_>,
+        wanted: &View,
+        settings: GridSettings,
+        into: &wgpu::TextureView,
+    ) -> Result<(), WarpError> {
+        settings.check()?;
+        let covered = shown.covered(wanted, 0.0..shown.nearest)?;
+        let group = self.bind(gpu, shown, wanted, settings)?;
+        draw(encoder, &self.grid, &group, &covered, into, wanted)
+    }
+
+    fn bind(
+        &self,
+        gpu: &Gpu,
+        shown: &Shown<'_>,
+        wanted: &View,
+        settings: GridSettings,
+    ) -> Result<wgpu::BindGroup, WarpError> {
+        let map = PixelMap::between(wanted, &shown.view)?;
+        let uniform = WarpUniform::new(&map, shown, wanted, settings);
+        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("warp"),
+            contents: bytemuck::bytes_of(&uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let [color, depth] = [&shown.target.color, &shown.target.depth]
+            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let resources = [
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&color),
+            wgpu::BindingResource::TextureView(&depth),
+        ];
+        Ok(bind(&gpu.device, &self.layout, &resources))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pipelines_build_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        for format in [wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Bgra8UnormSrgb] {
+            Warps::build(&device, format).unwrap();
+        }
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+    }
+}

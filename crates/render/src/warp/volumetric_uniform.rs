@@ -1,0 +1,87 @@
+//! Mirror of the WGSL struct of volumetric warps.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DAffine3, DVec3};
+use wheatstone_core::view::{RayField, View};
+use wheatstone_core::warp::{PixelMap, VolumetricSettings};
+
+/// More than any depth; WGSL has no infinity.
+const FURTHEST_M: f64 = 1e30;
+
+/// Mirror of `lib/layered_warp.wgsl`, where the fields are described.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(super) struct LayeredWarpUniform {
+    matrix: [[f32; 4]; 3],
+    epipole: [f32; 3],
+    pixel_tangent: f32,
+    wanted_m: [f32; 2],
+    size: [f32; 2],
+    wanted_direction: [f32; 3],
+    step_px: f32,
+    wanted_dx: [f32; 3],
+    most_steps: f32,
+    wanted_dy: [f32; 3],
+    padding_0: u32,
+    shown_direction: [f32; 3],
+    padding_1: u32,
+    shown_dx: [f32; 3],
+    padding_2: u32,
+    shown_dy: [f32; 3],
+    padding_3: u32,
+}
+
+impl LayeredWarpUniform {
+    /// From the map of wanted pixels to shown ones.
+    pub(super) fn new(map: &PixelMap, shown: &View, wanted: &View, settings: &VolumetricSettings) -> Self {
+        let [wanted_rays, shown_rays] = [wanted, shown].map(|view| RayField::new(view, DAffine3::IDENTITY));
+        let vector = |v: DVec3| v.as_vec3().to_array();
+        let (near_m, far_m) = wanted_rays.depth_range_m;
+        Self {
+            matrix: map.matrix.to_cols_array_2d().map(|[x, y, z]| [x as f32, y as f32, z as f32, 0.0]),
+            epipole: vector(map.epipole),
+            pixel_tangent: shown_rays.direction_dx.length() as f32,
+            wanted_m: [near_m, far_m].map(|depth_m| depth_m.min(FURTHEST_M) as f32),
+            size: shown.size.map(|side| side as f32),
+            wanted_direction: vector(wanted_rays.direction),
+            step_px: settings.step_px as f32,
+            wanted_dx: vector(wanted_rays.direction_dx),
+            most_steps: settings.most_steps as f32,
+            wanted_dy: vector(wanted_rays.direction_dy),
+            shown_direction: vector(shown_rays.direction),
+            shown_dx: vector(shown_rays.direction_dx),
+            shown_dy: vector(shown_rays.direction_dy),
+            ..Self::zeroed()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::assert_layout;
+
+    #[test]
+    fn it_matches_wgsl() {
+        assert_layout!(
+            "lib/layered_warp",
+            "LayeredWarp",
+            LayeredWarpUniform,
+            [
+                matrix,
+                epipole,
+                pixel_tangent,
+                wanted_m,
+                size,
+                wanted_direction,
+                step_px,
+                wanted_dx,
+                most_steps,
+                wanted_dy,
+                shown_direction,
+                shown_dx,
+                shown_dy,
+            ]
+        );
+    }
+}
