@@ -4,6 +4,7 @@ use std::fmt;
 use std::process::ExitCode;
 use wheatstone_io::{ReadError, WriteError};
 use wheatstone_render::GpuError;
+use wheatstone_render::live::LiveError;
 
 /// A command's failure, sorted by who can do something about it.
 #[derive(Debug)]
@@ -36,6 +37,15 @@ impl fmt::Display for Failure {
         match self {
             Self::Input(error) | Self::Internal(error) => write!(f, "{error:#}"),
             Self::Gpu(error) => error.fmt(f),
+        }
+    }
+}
+
+impl From<LiveError> for Failure {
+    fn from(error: LiveError) -> Self {
+        match error {
+            LiveError::Gpu(error) => Self::Gpu(error),
+            other => Self::input(other),
         }
     }
 }

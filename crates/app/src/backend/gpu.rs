@@ -4,6 +4,7 @@ use super::{GradientMapSize, Leaping, NoPair, PairCast, Shot, median_ms};
 use crate::pairing::Pairing;
 use crate::progress::Bar;
 use crate::skipping::Skipping;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::GradientDepth;
@@ -13,6 +14,7 @@ use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest};
 use wheatstone_core::stereo::Epipolar;
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
+use wheatstone_render::live::{LiveError, LiveView};
 use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, GpuSkipMap, SkipBuilder, SkipKernels};
 use wheatstone_render::{
     Gpu, GpuError, GpuGradientMap, GpuVolume, Leap, PairError, Prepared, Renderer, Sources, Target,
@@ -36,7 +38,7 @@ pub(crate) struct GpuEngine {
 
 /// What is made once per change of the settings.
 struct Scene {
-    prepared: Prepared,
+    prepared: Arc<Prepared>,
     gradient_map: Option<GradientMapSize>,
     leaping: Leaping,
 }
@@ -46,6 +48,20 @@ enum Structures {
     Nothing,
     Map(GpuSkipMap),
     Ranges(GpuBlockRanges),
+}
+
+/// Settings on a device, to be cast a few cells at a time.
+pub(crate) struct LiveEngine<'e> {
+    pub(crate) gpu: &'e Gpu,
+    pub(crate) renderer: &'e mut Renderer,
+    settings: Arc<Prepared>,
+}
+
+impl LiveEngine<'_> {
+    /// A view at full quality.
+    pub(crate) fn view(&self, view: View) -> Result<LiveView, LiveError> {
+        LiveView::new(self.gpu, Arc::clone(&self.settings), &[view], None)
+    }
 }
 
 impl GpuEngine {
@@ -96,7 +112,7 @@ impl GpuEngine {
         let prepared = self.renderer.prepare(&self.gpu, &sources, parameters.clone())?;
         let gradient_map =
             gradient_map.as_ref().map(|map| GradientMapSize { depth: map.depth(), bytes: map.byte_size() });
-        self.scenes.push(Scene { prepared, gradient_map, leaping });
+        self.scenes.push(Scene { prepared: Arc::new(prepared), gradient_map, leaping });
         Ok(Shot(self.scenes.len() - 1))
     }
 
@@ -172,6 +188,11 @@ impl GpuEngine {
         let start = Instant::now();
         self.renderer.render(&self.gpu, &self.scenes[shot.0].prepared, views, targets)?;
         Ok(start.elapsed())
+    }
+
+    pub(super) fn live(&mut self, shot: Shot) -> LiveEngine<'_> {
+        let settings = Arc::clone(&self.scenes[shot.0].prepared);
+        LiveEngine { gpu: &self.gpu, renderer: &mut self.renderer, settings }
     }
 
     pub(super) fn cast_pair(

@@ -9,6 +9,7 @@ use crate::skipping::Skipping;
 use clap::ValueEnum;
 use cpu::CpuEngine;
 use gpu::GpuEngine;
+pub(crate) use gpu::LiveEngine;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
@@ -244,6 +245,14 @@ impl<'v> Engine<'v> {
         match self {
             Self::Gpu(engine) => engine.plan(request),
             Self::Cpu(engine) => engine.plan(request),
+        }
+    }
+
+    /// Settings on a GPU, to be cast a few cells at a time.
+    pub(crate) fn live(&mut self, shot: Shot) -> Result<LiveEngine<'_>, Failure> {
+        match self {
+            Self::Gpu(engine) => Ok(engine.live(shot)),
+            Self::Cpu(_) => Err(Failure::input("the CPU renderer does not cast live")),
         }
     }
 

@@ -1,6 +1,7 @@
 //! `bench warp`: how far what a display shows is from what its eyes should see, by the protocol of VR §6.2.
 
 mod charts;
+mod live;
 mod motion;
 mod pictures;
 mod session;
@@ -19,12 +20,13 @@ use crate::skipping::{SkipArgs, SkipName};
 use crate::spec;
 use crate::transfer_spec::{self, TransferSpec};
 use clap::{Args, ValueEnum};
+use live::Keeping;
 use motion::{Extent, MotionName};
 use serde_json::json;
 use session::Session;
 use source::{Camera, Layered};
 use std::path::PathBuf;
-use timeline::{Pace, refreshes};
+use timeline::Pace;
 use trace::Trace;
 use warp::WarpName;
 use wheatstone_core::cast::CastParameters;
@@ -104,6 +106,11 @@ pub(crate) struct WarpBenchArgs {
     #[arg(long, value_name = "MS", default_value_t = 45.0, value_parser = spec::within(0.1..=10_000.0), allow_negative_numbers = true)]
     render_ms: f64,
 
+    /// Cast in real time on a display of which a picture takes so many refreshes (5 to 20, or as given) [default: 10]; the
+    /// options above do not count then.
+    #[arg(long, value_name = "REFRESHES", num_args = 0..=1, default_missing_value = "10", value_parser = spec::within(1.0..=100.0), conflicts_with_all = ["refresh_hz", "render_ms"])]
+    live: Option<f64>,
+
     /// Time of each refresh that is kept for the warp, milliseconds; less than a refresh.
     #[arg(long, value_name = "MS", default_value_t = 2.0, value_parser = spec::within(0.0..=1000.0), allow_negative_numbers = true)]
     warp_ms: f64,
@@ -133,24 +140,26 @@ pub(crate) fn run(args: &WarpBenchArgs) -> Result<(), Failure> {
     [&args.plot, &args.error_pictures].into_iter().flatten().try_for_each(|folder| make_folder(folder))?;
     let pace = args.pace()?;
     let mut device = None;
-    let mut traces = Vec::new();
+    let (mut traces, mut keepings) = (Vec::new(), Vec::new());
     for volume in &args.volumes {
-        device = Some(args.measure_volume(volume, &pace, &mut traces)?);
+        device = Some(args.measure_volume(volume, &pace, &mut traces, &mut keepings)?);
     }
     if let Some(folder) = &args.plot {
-        charts::draw(folder, &traces, &pace.display)?;
+        charts::draw(folder, &traces)?;
     }
     if args.json {
         return print_json(&json!({
             "device": device.as_ref().map(Device::to_json),
             "size": args.size,
-            "refresh_hz": args.refresh_hz,
-            "render_ms": args.render_ms,
+            "refresh_hz": args.live.is_none().then_some(args.refresh_hz),
+            "render_ms": args.live.is_none().then_some(args.render_ms),
+            "live": args.live.map(|_| keepings.iter().map(Keeping::to_json).collect::<Vec<_>>()),
             "rows": traces.iter().map(Trace::to_json).collect::<Vec<_>>(),
         }));
     }
     let mut tables: Vec<String> = device.iter().map(Device::to_string).collect();
     tables.push(trace::to_table(&traces));
+    tables.extend(keepings.iter().map(Keeping::to_line));
     print(&tables.join("\n"))
 }
 
@@ -174,6 +183,7 @@ impl WarpBenchArgs {
         described: &str,
         pace: &Pace,
         traces: &mut Vec<Trace>,
+        keepings: &mut Vec<Keeping>,
     ) -> Result<Device, Failure> {
         let Opened { volume, name, benchmark } = open(described)?;
         let transfer = self.tf.clone().unwrap_or_else(|| default_transfer(&benchmark));
@@ -195,10 +205,24 @@ impl WarpBenchArgs {
             .then(|| Layered { caster: Caster::with_storage(&volume, storage), parameters: &parameters });
         let mut camera = Camera { engine: &mut engine, shot, layered };
         for &motion in &self.motions {
-            let refreshes = refreshes(&motion.about(Pose::of(&middle), extent)?, pace, self.size)?;
+            let path = motion.about(Pose::of(&middle), extent)?;
+            let mut display = pace.display;
+            let refreshes = match self.live {
+                None => timeline::refreshes(&path, pace, self.size)?,
+                Some(refreshes) => {
+                    let mut engine = camera.engine.live(shot)?;
+                    let pace = live::fitting_pace(&mut engine, &path, &middle, refreshes, pace.reserve_s)?;
+                    let case = format!("{name}, {}", motion.name());
+                    let (refreshes, keeping) = live::refreshes(&mut engine, &path, &middle, &pace, case)?;
+                    keepings.push(keeping);
+                    display = pace.display;
+                    refreshes
+                }
+            };
             let session = Session {
                 volume: &name,
                 motion,
+                display,
                 like: &middle,
                 refreshes: &refreshes,
                 warps,

@@ -156,6 +156,8 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         &["bench", "warp", "box:8", "--warp-ms", "12"],
         &["bench", "warp", "box:8", "--warps", "sheet"],
         &["bench", "warp", "box:8", "--render-ms", "0"],
+        &["bench", "warp", "box:8", "--live", "0"],
+        &["bench", "warp", "box:8", "--live", "--render-ms", "30"],
         &["bench", "warp", "box:8", "--plot", "file"],
         &["bench", "skip", "beetle:0"],
         &["bench", "skip", "beetle:8", "--block-sizes", "4,99"],

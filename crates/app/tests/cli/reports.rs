@@ -296,7 +296,7 @@ fn bench_warp_traces_every_warp() {
     let run = bench.run(&[&small[..], &folders].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);
     let json = run.json();
-    assert_eq!(keys(&json), ["device", "refresh_hz", "render_ms", "rows", "size"]);
+    assert_eq!(keys(&json), ["device", "live", "refresh_hz", "render_ms", "rows", "size"]);
     let rows = json["rows"].as_array().unwrap();
     let row_keys =
         ["drop_worst", "dssim_mean", "dssim_worst", "missed", "motion", "trace", "volume", "warp", "warp_ms"];
@@ -312,6 +312,26 @@ fn bench_warp_traces_every_warp() {
     assert_eq!(again["rows"][3]["trace"], rows[3]["trace"]);
     assert_eq!(std::fs::read_dir(bench.path("plots")).unwrap().count(), 2);
     assert_eq!(std::fs::read_dir(bench.path("errors")).unwrap().count(), 24);
+}
+
+#[test]
+fn bench_warp_casts_live() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let small = ["bench", "warp", "sphere.nrrd", "--size", "64x64", "--tf", "ramp:0.2..1", "--json"];
+    let run = bench.run(&[&small[..], &["--motions", "both", "--warps", "none", "--live", "5"]].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let json = run.json();
+    let live = &json["live"].as_array().unwrap()[0];
+    let live_keys = ["case", "cast_share", "latest_ms", "missed", "period_ms", "refreshes", "render_ms"];
+    assert_eq!(keys(live), live_keys);
+    let refreshes = live["refreshes"].as_f64().unwrap();
+    let period_s = 1e-3 * live["period_ms"].as_f64().unwrap();
+    assert!((refreshes * period_s - 1.0).abs() <= period_s, "{live}");
+    assert_eq!(json["rows"][0]["trace"].as_array().unwrap().len() as f64, refreshes);
+    assert!(json["refresh_hz"].is_null());
 }
 
 #[test]

@@ -20,31 +20,42 @@ const MOST_DEVIATIONS: f64 = 8.0;
 /// Learns how far batches are off what was expected of them, in deviations.
 ///
 /// In place of the bias b of VR Alg. 5: errors of single cells cancel in a batch, so that a factor per cell that covers
-/// their errors reserves too much, and a fixed one reserves too little where things move. The reserve is what all but the
-/// worst of the remembered batches would have kept to, so the share that exceeds it is about 2 in 257, whatever the
-/// distribution of errors.
+/// their errors reserves too much, and a fixed one reserves too little where things move. The reserve is what all but a few of the
+/// remembered batches would have kept to, so the share that exceeds it is about that, whatever the distribution of errors.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Margin {
+    /// Of the remembered batches.
+    tolerated: usize,
     /// Oldest first.
     recent_deviations: VecDeque<f64>,
 }
 
 impl Default for Margin {
+    /// One batch in 256 may take longer.
     fn default() -> Self {
-        let mut recent_deviations = VecDeque::from([0.0; REMEMBERED]);
-        recent_deviations.range_mut(DOUBTFUL - 2..DOUBTFUL).for_each(|d| *d = FIRST_DEVIATIONS);
-        Self { recent_deviations }
+        Self::tolerating(0.0)
     }
 }
 
 impl Margin {
-    /// Deviations by which to undercut a budget: the second most of late.
+    /// So large a share of batches may take longer, but one in 256 at least.
+    pub(super) fn tolerating(share: f64) -> Self {
+        let tolerated = ((share * REMEMBERED as f64) as usize).clamp(1, DOUBTFUL - 1);
+        let mut recent_deviations = VecDeque::from([0.0; REMEMBERED]);
+        recent_deviations.range_mut(DOUBTFUL - 1 - tolerated..DOUBTFUL).for_each(|d| *d = FIRST_DEVIATIONS);
+        Self { tolerated, recent_deviations }
+    }
+
+    /// Forgets all batches.
+    pub(super) fn forget(&mut self) {
+        *self = Self::tolerating(self.tolerated as f64 / REMEMBERED as f64);
+    }
+
+    /// Deviations by which to undercut a budget: the most of late but for those tolerated.
     pub(super) fn deviations(&self) -> f64 {
-        let (_, second) =
-            self.recent_deviations.iter().fold((0.0_f64, 0.0_f64), |(most, second), &deviations| {
-                (most.max(deviations), second.max(deviations.min(most)))
-            });
-        second.max(FEWEST_DEVIATIONS)
+        let mut deviations: Vec<f64> = self.recent_deviations.iter().copied().collect();
+        let (_, most, _) = deviations.select_nth_unstable_by(REMEMBERED - 1 - self.tolerated, f64::total_cmp);
+        most.max(FEWEST_DEVIATIONS)
     }
 
     /// Learns from a batch.
@@ -76,6 +87,16 @@ mod tests {
         assert_eq!(learn(&[1e9]), MOST_DEVIATIONS);
         assert_eq!(learn(&[1.5; REMEMBERED]), 1.5);
         assert_eq!(learn(&[-3.0; REMEMBERED]), FEWEST_DEVIATIONS);
+    }
+
+    #[test]
+    fn more_batches_are_tolerated_where_that_is_asked_for() {
+        let mut margin = Margin::tolerating(0.02);
+        (0..REMEMBERED).for_each(|batch| margin.learn(1.0, 0.01, 1.0 + 0.01 * (batch % 50) as f64));
+        let deviations = margin.deviations();
+        assert!((4.5..=5.0).contains(&deviations), "{deviations}");
+        margin.forget();
+        assert_eq!(margin, Margin::tolerating(0.02));
     }
 
     #[test]

@@ -11,7 +11,7 @@ const WHOLE_VIEW_CELLS: f64 = 2.0;
 /// Deviation of a cell of which nothing is known, as a share of the mean cell.
 const DEVIATION_OF_ANY: f64 = 0.5;
 
-/// Deviation of a cell that is like all those about it, as a share of its time.
+/// Deviation of a cell that is like all those about it, as a share of its time or of the mean cell's, whichever is more.
 const LEAST_DEVIATION: f64 = 0.1;
 
 /// How to predict the time of a cell that has not been cast in this view.
@@ -85,7 +85,8 @@ fn corrected(costs: &CellCosts, cell: usize) -> Option<Expectation> {
     }
     let ratio = measured_sum_s / smoothed_sum_s;
     let seconds = ratio * smoothed.seconds;
-    let variance_s2 = ratio * ratio * smoothed.variance_s2 + (LEAST_DEVIATION * seconds).powi(2);
+    let variance_s2 = ratio * ratio * smoothed.variance_s2
+        + (LEAST_DEVIATION * seconds.max(ratio * costs.mean_last_s())).powi(2);
     Some(Expectation { seconds, variance_s2 })
 }
 

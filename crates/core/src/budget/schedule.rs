@@ -53,6 +53,13 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
         }
     }
 
+    /// Lets so large a share of batches take longer than they have, instead of one in 256: where times have long tails, most of the
+    /// budget would else be kept in reserve for them.
+    #[must_use]
+    pub fn tolerating(self, missed_share: f64) -> Self {
+        Self { margin: Margin::tolerating(missed_share), ..self }
+    }
+
     /// The picture to cast next, when the one under way is complete: a new pose.
     pub fn aim(&mut self, request: ViewRequest<C>) {
         self.wanted = request;
@@ -71,7 +78,7 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
     /// The only picture that can still be cast: another volume. Drops what is under way and what is known about costs.
     pub fn replace(&mut self, request: ViewRequest<C>) {
         self.back = None;
-        self.margin = Margin::default();
+        self.margin.forget();
         self.costs = CellCosts::new(*request.grid(), request.work_per_pixel());
         // Times of cells cast so far are another volume's.
         self.views_begun += 2;
@@ -126,7 +133,9 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
             Some(2) => timed.for_each(|(&cell, &s)| self.costs.record_late(cell, s)),
             _ => return Ok(()),
         }
-        self.margin.learn(batch.expected_s, batch.variance_s2, seconds.iter().sum());
+        if self.costs.is_known() {
+            self.margin.learn(batch.expected_s, batch.variance_s2, seconds.iter().sum());
+        }
         Ok(())
     }
 

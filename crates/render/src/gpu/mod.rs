@@ -45,10 +45,12 @@ pub fn adapters() -> Vec<AdapterDescription> {
     ranked_adapters(&instance()).iter().map(describe).collect()
 }
 
-/// The graphics APIs that adapters are looked for in.
+/// The graphics APIs that adapters are looked for in. Arguments of indirect dispatches are not checked by a dispatch before each:
+/// kernels count them up to what a picture holds.
 pub fn instance() -> wgpu::Instance {
     wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
+        flags: wgpu::InstanceFlags::default() - wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     })
 }

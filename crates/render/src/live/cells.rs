@@ -4,32 +4,38 @@ use crate::pacer::BAND_ROWS;
 use crate::squares::Squares;
 use wheatstone_core::budget::{BudgetError, CellGrid};
 
-/// How small and how large cells are, and how many a refresh should hold.
+/// How small and how large cells are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CellSizes {
     /// Pixels, a multiple of `BAND_ROWS`.
     smallest_side: u32,
+    /// How many a refresh should hold: errors of their predictions cancel.
     per_refresh: f64,
+    /// Time that a cell should take at least, seconds: that of its dispatches is to be a small part.
+    shortest_s: f64,
 }
 
 impl CellSizes {
-    /// Software runs eight rays at a time: small cells are as cheap per ray as large ones, and forty per refresh are foretold
-    /// well. Hardware needs tens of thousands of rays at a time to be busy.
+    /// Software runs eight rays at a time and takes 0.15 ms for a cell without any. Hardware needs tens of thousands of rays
+    /// at a time to be busy.
     pub(super) fn of(is_software: bool) -> Self {
         if is_software {
-            Self { smallest_side: 16, per_refresh: 40.0 }
+            Self { smallest_side: 16, per_refresh: 30.0, shortest_s: 4e-4 }
         } else {
-            Self { smallest_side: 64, per_refresh: 10.0 }
+            Self { smallest_side: 64, per_refresh: 10.0, shortest_s: 2e-4 }
         }
     }
 
-    /// Side of the cells of a view of so many pixels that takes so many refreshes, if that is known.
-    pub(super) fn side(self, pixels: f64, refreshes: Option<f64>) -> u32 {
-        let first = 2 * self.smallest_side;
-        let largest = 8 * self.smallest_side;
-        let side = refreshes
-            .map_or(f64::from(first), |refreshes| (pixels / (self.per_refresh * refreshes.max(1e-3))).sqrt());
-        (side as u32 / BAND_ROWS * BAND_ROWS).clamp(self.smallest_side, largest)
+    /// Side of the first cells, pixels.
+    pub(super) fn first_side(self) -> u32 {
+        2 * self.smallest_side
+    }
+
+    /// Side of the cells of views that may show something in so many pixels and take some seconds, pixels.
+    pub(super) fn side(self, covered_px: f64, view_s: f64, refresh_s: f64) -> u32 {
+        let cell_s = (refresh_s / self.per_refresh).max(self.shortest_s);
+        let side = (covered_px * cell_s / view_s).sqrt();
+        (side as u32 / BAND_ROWS * BAND_ROWS).clamp(self.smallest_side, 8 * self.smallest_side)
     }
 }
 
@@ -86,11 +92,8 @@ mod tests {
 
     #[test]
     fn dear_views_have_small_cells_and_too_many_are_avoided() {
-        let sizes = CellSizes::of(true);
-        assert_eq!(sizes.side(768.0 * 768.0, Some(10.0)), 32);
-        assert_eq!(sizes.side(768.0 * 768.0, Some(1e6)), 16);
-        assert_eq!(sizes.side(768.0 * 768.0, Some(0.0)), 128);
-        assert_eq!(sizes.side(768.0 * 768.0, None), 32);
+        let side = |view_s| CellSizes::of(true).side(768.0 * 768.0, view_s, 0.02);
+        assert_eq!([0.0, 0.2, 1e4].map(side), [128, 32, 16]);
         let cells = RigCells::new([8192, 8192], 2, 16).unwrap();
         assert!(cells.grid().cells() <= 1 << 16);
         assert!(RigCells::new([0, 5], 1, 16).is_err());

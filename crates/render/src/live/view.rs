@@ -17,6 +17,12 @@ use std::time::{Duration, Instant};
 use wheatstone_core::budget::{CastSchedule, Predictor, Quality, QualityControl, ViewRequest};
 use wheatstone_core::view::View;
 
+/// Rays are not cast in shorter parts, seconds.
+const SHORTEST_PIECE_S: f64 = 0.004;
+
+/// Share of refreshes that may be late on software Vulkan, which shares the processor with all that runs besides.
+const MISSED_SHARE_OF_SOFTWARE: f64 = 0.02;
+
 /// The pictures of a rig's views, cast together a few cells per refresh. Whatever changes, and however often, the front
 /// picture is whole: of all views, from one pose, with one volume's settings.
 ///
@@ -43,6 +49,8 @@ pub struct LiveView {
     spares: Spares,
     clock: PieceClock,
     uniforms: wgpu::Buffer,
+    /// Time that the host took to hand the last pieces over, before the device begins with them.
+    handing_over_s: f64,
     begun: Instant,
 }
 
@@ -79,7 +87,7 @@ impl LiveView {
         let largest_side = gpu.capabilities().largest_2d_side;
         let wanted = Wanted::new(views, settings, largest_side)?;
         let cell_sizes = CellSizes::of(gpu.description().is_software);
-        let (request, _) = request(&wanted, cell_sizes, None)?;
+        let (request, _) = request(&wanted, cell_sizes.first_side())?;
         let uniforms = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("views of pieces"),
             size: (PieceClock::MOST_PIECES * size_of::<ViewUniform>()) as u64,
@@ -87,9 +95,10 @@ impl LiveView {
             mapped_at_creation: false,
         });
         let clock = PieceClock::new(gpu);
+        let missed_share = if gpu.description().is_software { MISSED_SHARE_OF_SOFTWARE } else { 0.0 };
         gpu.check()?;
         Ok(Self {
-            schedule: CastSchedule::new(request, Predictor::Corrected),
+            schedule: CastSchedule::new(request, Predictor::Corrected).tolerating(missed_share),
             control: control.map(|control| control.beginning_at(Quality::COARSEST)),
             cell_sizes,
             largest_side,
@@ -104,6 +113,7 @@ impl LiveView {
             spares: Spares::default(),
             clock,
             uniforms,
+            handing_over_s: 0.0,
             begun: Instant::now(),
         })
     }
@@ -130,6 +140,11 @@ impl LiveView {
     /// Another volume, or settings that take far more or less time: drops the picture under way and what is known of times.
     pub fn replace(&mut self, settings: Arc<Prepared>) {
         self.want(self.wanted.with_settings(settings), Change::Volume);
+    }
+
+    /// What all cells of the view that began last take, as far as is known, seconds.
+    pub fn view_s(&self) -> Option<f64> {
+        self.schedule.costs().view_s()
     }
 
     /// The newest picture that is whole. Work submitted from now on finds it finished.
@@ -177,10 +192,12 @@ impl LiveView {
         if let Some(change) = self.change.take() {
             self.apply(change)?;
         }
-        let activity = match self.plan(gpu, renderer, budget_s)? {
-            None => self.hand_over(gpu, renderer, budget_s)?,
-            Some(idle) => idle,
-        };
+        if let Some(idle) = self.plan(gpu, renderer, (budget_s - self.handing_over_s).max(0.0))? {
+            return Ok(Refresh { activity: idle, measured });
+        }
+        let start = Instant::now();
+        let activity = self.hand_over(gpu, renderer, budget_s)?;
+        self.handing_over_s = start.elapsed().as_secs_f64().min(0.5 * budget_s);
         Ok(Refresh { activity, measured })
     }
 
@@ -211,7 +228,8 @@ impl LiveView {
         if change > Change::Pose {
             self.coarser.clear();
         }
-        let (request, _) = request(&self.wanted.with_quality(self.last_quality), self.cell_sizes, None)?;
+        let (request, _) =
+            request(&self.wanted.with_quality(self.last_quality), self.cell_sizes.first_side())?;
         match change {
             Change::Volume => {
                 self.last_quality = Quality::COARSEST;
@@ -249,15 +267,16 @@ impl LiveView {
         let (Some(view), Some(batch)) = (&self.under_way, self.schedule.plan(budget_s)) else {
             return Ok(Some(Activity::Resting));
         };
-        let fits = batch.expected_s() <= budget_s;
+        let piece_s = budget_s.max(SHORTEST_PIECE_S);
+        let fits = batch.expected_s() <= piece_s;
         let cut = |(place, &cell): (usize, &usize)| {
             let whole = view.whole_cell(place, cell)?;
             let share = if fits {
                 1.0
             } else if batch.expected_s().is_finite() {
-                budget_s / batch.expected_s()
+                piece_s / batch.expected_s()
             } else {
-                Piece::guessed_share(&view.prepared, &whole.squares, budget_s)
+                Piece::guessed_share(&view.prepared, &whole.squares, piece_s)
             };
             Some(Piece::of_cell(&whole, &view.prepared, share))
         };
@@ -287,9 +306,12 @@ impl LiveView {
             return Ok(Some(Activity::Waiting));
         }
         let work = |quality: Quality| quality.resolution().powi(2) * quality.work_per_pixel();
-        let refreshes = last_s.map(|last_s| last_s * work(quality) / (work(self.last_quality) * budget_s));
         let wanted = self.wanted.with_quality(quality);
-        let (request, cells) = request(&wanted, self.cell_sizes, refreshes)?;
+        let side = last_s.map_or(self.cell_sizes.first_side(), |last_s| {
+            let view_s = last_s * work(quality) / work(self.last_quality);
+            self.cell_sizes.side(wanted.covered_px(), view_s, budget_s)
+        });
+        let (request, cells) = request(&wanted, side)?;
         let prepared = self.prepared(gpu, renderer, quality)?;
         let view = UnderWay::new(gpu, renderer, &mut self.spares, wanted, cells, prepared)?;
         self.under_way = Some(view);
@@ -370,15 +392,9 @@ impl LiveView {
     }
 }
 
-/// The request of a picture that takes so many refreshes, if that is known, and its cells.
-fn request(
-    wanted: &Wanted,
-    sizes: CellSizes,
-    refreshes: Option<f64>,
-) -> Result<(ViewRequest<Wanted>, RigCells), LiveError> {
-    let size = wanted.size();
-    let pixels = size.map(f64::from).iter().product::<f64>() * wanted.eyes() as f64;
-    let cells = RigCells::new(size, wanted.eyes(), sizes.side(pixels, refreshes))?;
+/// The request of a picture of cells with sides of so many pixels or more, and its cells.
+fn request(wanted: &Wanted, side: u32) -> Result<(ViewRequest<Wanted>, RigCells), LiveError> {
+    let cells = RigCells::new(wanted.size(), wanted.eyes(), side)?;
     let work_per_pixel = wanted.quality.work_per_pixel();
     Ok((ViewRequest::new(wanted.clone(), cells.grid(), work_per_pixel)?, cells))
 }

@@ -5,7 +5,7 @@ use crate::renderer::Prepared;
 use crate::target::check_size;
 use std::sync::Arc;
 use wheatstone_core::budget::Quality;
-use wheatstone_core::view::View;
+use wheatstone_core::view::{PixelRect, View};
 
 /// All that tells one picture from another: the views of a rig, the settings with their volume, and how coarse it is.
 #[derive(Debug, Clone)]
@@ -56,6 +56,16 @@ impl Wanted {
 
     pub(super) fn eyes(&self) -> usize {
         self.views.len()
+    }
+
+    /// Pixels of all views in which something may be seen.
+    pub(super) fn covered_px(&self) -> f64 {
+        let corners = self.settings.parameters.visible_corners_world();
+        let covered = |view: View| {
+            let covered = PixelRect::around(&view, corners);
+            (covered.columns.len() * covered.rows.len()) as f64
+        };
+        self.cast_views().map(covered).sum()
     }
 
     /// The views as they are cast.

@@ -70,7 +70,7 @@ fn a_picture_of_many_refreshes_is_the_one_cast_at_once() {
             let settings = prepared(gpu, renderer, |set| (set.mode, set.shading) = (mode, shading));
             let views = Rig::Stereo { eye_distance_m: 0.1, convergence_m: 1.5 }.views(&outside());
             let mut live = LiveView::new(gpu, settings, &views, None).unwrap();
-            for (budget, least) in [(NOTHING, 12), (LITTLE, 2), (PLENTY, 1)] {
+            for (budget, least) in [(NOTHING, 4), (LITTLE, 2), (PLENTY, 1)] {
                 for views in [&views[..1], &views] {
                     live.aim(views).unwrap();
                     let refreshes = complete(gpu, renderer, &mut live, budget);

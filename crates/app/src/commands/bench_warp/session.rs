@@ -10,6 +10,7 @@ use crate::failure::Failure;
 use crate::progress::Bar;
 use anyhow::Context as _;
 use std::time::Instant;
+use wheatstone_core::head::Display;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::metrics::{SsimMap, dssim};
 use wheatstone_core::view::View;
@@ -18,6 +19,7 @@ use wheatstone_core::view::View;
 pub(super) struct Session<'a> {
     pub(super) volume: &'a str,
     pub(super) motion: MotionName,
+    pub(super) display: Display,
     /// The projection and size of all views.
     pub(super) like: &'a View,
     pub(super) refreshes: &'a [Refresh],
@@ -36,6 +38,7 @@ pub(super) fn run(
     let new_trace = |&warp: &WarpName| Trace {
         volume: session.volume.to_owned(),
         motion: session.motion,
+        display: session.display,
         warp,
         dssim: Vec::new(),
         warp_ms: Vec::new(),

@@ -23,6 +23,13 @@ pub(super) struct Pace {
     pub(super) reserve_s: f64,
 }
 
+impl Pace {
+    /// Time of each refresh for casting, seconds.
+    pub(super) fn available_s(&self) -> f64 {
+        self.display.period_s() - self.reserve_s
+    }
+}
+
 /// A refresh of the display.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Refresh {
@@ -43,7 +50,7 @@ pub(super) fn refreshes(motion: &HeadMotion, pace: &Pace, size: [u32; 2]) -> Res
     let cell_side_px = size[0].max(size[1]).div_ceil(CELLS_PER_SIDE).next_multiple_of(CELL_STEP_PX);
     let grid = CellGrid::new(size, cell_side_px).map_err(Failure::input)?;
     let period_s = pace.display.period_s();
-    let available_s = period_s - pace.reserve_s;
+    let available_s = pace.available_s();
     let refreshes_of_cast = (pace.render_s / available_s).ceil();
     let cell_s = pace.render_s / grid.cells() as f64;
     let mut random = fastrand::Rng::with_seed(1);

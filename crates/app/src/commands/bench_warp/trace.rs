@@ -4,6 +4,7 @@ use super::motion::MotionName;
 use super::warp::WarpName;
 use crate::backend::median;
 use serde_json::{Value, json};
+use wheatstone_core::head::Display;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::metrics::SsimMap;
 
@@ -11,6 +12,7 @@ use wheatstone_core::metrics::SsimMap;
 pub(super) struct Trace {
     pub(super) volume: String,
     pub(super) motion: MotionName,
+    pub(super) display: Display,
     pub(super) warp: WarpName,
     /// Of what is displayed at each refresh from a true render.
     pub(super) dssim: Vec<f64>,
