@@ -131,10 +131,8 @@ impl Gpu {
             keep_first(&on_error, GpuError::from(error));
         }));
         let on_loss = Arc::clone(&fault);
-        device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                keep_first(&on_loss, GpuError::Lost { reason: message });
-            }
+        device.set_device_lost_callback(move |_, message| {
+            keep_first(&on_loss, GpuError::Lost { reason: message });
         });
         Self { adapter, device, queue, description, fault }
     }

@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn dear_views_have_small_cells_and_too_many_are_avoided() {
         let side = |view_s| CellSizes::of(true).side(768.0 * 768.0, view_s, 0.02);
-        assert_eq!([0.0, 0.2, 1e4].map(side), [128, 32, 16]);
+        assert_eq!([0.0, 0.2, 1e4].map(side), [128, 40, 16]);
         let cells = RigCells::new([8192, 8192], 2, 16).unwrap();
         assert!(cells.grid().cells() <= 1 << 16);
         assert!(RigCells::new([0, 5], 1, 16).is_err());

@@ -1,96 +1,58 @@
-//! What pieces take, by the device's timestamps.
+//! What pieces take.
 
-use crate::gpu::{Gpu, GpuError};
+use super::host_clock::HostClock;
+use super::stamp_clock::StampClock;
+use crate::gpu::{Gpu, GpuError, SUBMISSION_TIMEOUT};
 use crate::stamps::Stamps;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// Bytes of a timestamp.
-const STAMP_BYTES: u64 = 8;
-
-/// Times the pieces of one submission after the other.
+/// Times the pieces of one submission after the other: by timestamps, or where the device has none by the host's clock.
 #[derive(Debug)]
-pub(super) struct PieceClock {
-    set: wgpu::QuerySet,
-    resolved: wgpu::Buffer,
-    readable: wgpu::Buffer,
-    tick_s: f64,
-    reading: Option<Reading>,
-}
-
-/// Timestamps on their way to the host.
-#[derive(Debug)]
-struct Reading {
-    bytes: u64,
-    arrived: Receiver<Result<(), wgpu::BufferAsyncError>>,
+pub(super) enum PieceClock {
+    Stamps(Box<StampClock>),
+    Host(HostClock),
 }
 
 impl PieceClock {
-    /// Most pieces of a submission: the timestamps of a set but the first.
-    pub(super) const MOST_PIECES: usize = wgpu::QUERY_SET_MAX_QUERIES as usize - 1;
+    /// Most pieces of a submission.
+    pub(super) const MOST_PIECES: usize = StampClock::MOST_PIECES;
 
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let buffer = |label, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: u64::from(wgpu::QUERY_SET_MAX_QUERIES) * STAMP_BYTES,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        let resolve = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        Self {
-            set: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
-                label: Some("ends of pieces"),
-                ty: wgpu::QueryType::Timestamp,
-                count: wgpu::QUERY_SET_MAX_QUERIES,
-            }),
-            resolved: buffer("timestamps", resolve),
-            readable: buffer("timestamps read", wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
-            tick_s: f64::from(gpu.queue.get_timestamp_period()) * 1e-9,
-            reading: None,
+        if gpu.capabilities().has_timestamps {
+            Self::Stamps(Box::new(StampClock::new(gpu)))
+        } else {
+            Self::Host(HostClock::default())
         }
     }
 
-    /// Timestamps of a piece: of its end, and of the beginning of the first.
+    /// Timestamps of a piece of the submission.
     pub(super) fn stamps(&self, piece: usize) -> Stamps<'_> {
-        let end = piece as u32 + 1;
-        Stamps::new(&self.set, (piece == 0).then_some(0), Some(end))
+        match self {
+            Self::Stamps(clock) => clock.stamps(piece),
+            Self::Host(_) => Stamps::NONE,
+        }
     }
 
-    /// Encodes the reading of the timestamps of one or more pieces, after them.
+    /// Encodes what is to be read of one or more pieces, after them.
     pub(super) fn encode_reading(&self, encoder: &mut wgpu::CommandEncoder, pieces: usize) {
-        let stamps = pieces as u32 + 1;
-        encoder.resolve_query_set(&self.set, 0..stamps, &self.resolved, 0);
-        let bytes = u64::from(stamps) * STAMP_BYTES;
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, bytes);
+        match self {
+            Self::Stamps(clock) => clock.encode_reading(encoder, pieces),
+            Self::Host(_) => {}
+        }
     }
 
     /// Begins to read, after the submission.
-    pub(super) fn begin_reading(&mut self, pieces: usize) {
-        let bytes = (pieces as u64 + 1) * STAMP_BYTES;
-        let (sender, arrived) = channel();
-        // Nobody listens any more where the view has been given up.
-        self.readable.slice(..bytes).map_async(wgpu::MapMode::Read, move |result| drop(sender.send(result)));
-        self.reading = Some(Reading { bytes, arrived });
+    pub(super) fn begin_reading(&mut self, gpu: &Gpu, pieces: usize) {
+        match self {
+            Self::Stamps(clock) => clock.begin_reading(pieces),
+            Self::Host(clock) => clock.begin_reading((&gpu.device, &gpu.queue), pieces, SUBMISSION_TIMEOUT),
+        }
     }
 
     /// What the pieces took, seconds, once the device has finished them.
     pub(super) fn read(&mut self) -> Result<Option<Vec<f64>>, GpuError> {
-        let Some(reading) = &self.reading else { return Ok(None) };
-        let refused = |error: &dyn std::fmt::Display| GpuError::Refused { reason: error.to_string() };
-        match reading.arrived.try_recv() {
-            Err(TryRecvError::Empty) => return Ok(None),
-            Err(error @ TryRecvError::Disconnected) => return Err(refused(&error)),
-            Ok(result) => result.map_err(|error| refused(&error))?,
+        match self {
+            Self::Stamps(clock) => clock.read(),
+            Self::Host(clock) => Ok(clock.read()),
         }
-        let mapped =
-            self.readable.slice(..reading.bytes).get_mapped_range().map_err(|error| refused(&error))?;
-        let stamps: &[u64] = bytemuck::cast_slice(&mapped);
-        let between = |stamps: &[u64]| stamps[1].saturating_sub(stamps[0]) as f64 * self.tick_s;
-        let seconds = stamps.windows(2).map(between).collect();
-        drop(mapped);
-        self.readable.unmap();
-        self.reading = None;
-        Ok(Some(seconds))
     }
 }

@@ -365,7 +365,7 @@ impl LiveView {
         } else {
             let is_first = open.batch.expected_s().is_infinite();
             let submitted = Instant::now();
-            self.clock.begin_reading(places.len());
+            self.clock.begin_reading(gpu, places.len());
             self.flight = Some(Flight { places, submitted, budget_s, is_first, completes_view });
         }
         if completes_view {

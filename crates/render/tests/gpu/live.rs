@@ -11,7 +11,7 @@ use wheatstone_core::scene::{Mode, Settings, Shading};
 use wheatstone_core::view::{Rig, View};
 use wheatstone_core::volume::VoxelType;
 use wheatstone_render::live::{Activity, LiveError, LiveView};
-use wheatstone_render::{Gpu, GpuError, GpuVolume, Prepared, Renderer, Sources};
+use wheatstone_render::{AdapterDescription, Gpu, GpuError, GpuVolume, Prepared, Renderer, Sources};
 
 /// Too little for a cell: every refresh casts as little as possible.
 const NOTHING: Duration = Duration::from_nanos(1);
@@ -155,5 +155,28 @@ fn impossible_views_are_refused_and_possible_ones_cast_after_them() {
         complete(gpu, renderer, &mut live, LITTLE);
         assert!(live.front().unwrap().pictures().all(|(_, view)| view == next));
         assert_whole(gpu, renderer, &live);
+    });
+}
+
+#[test]
+fn a_device_that_is_gone_is_lost_at_every_refresh() {
+    on_device(|shared, _| {
+        let is_same = |description: &AdapterDescription| description == shared.description();
+        let gpu = Gpu::open(is_same).unwrap();
+        let mut renderer = Renderer::new(&gpu).unwrap();
+        let settings = prepared(&gpu, &mut renderer, |_| {});
+        let mut live = LiveView::new(&gpu, settings, &[outside()], None).unwrap();
+        complete(&gpu, &mut renderer, &mut live, PLENTY);
+        live.aim(&[view([40, 40], DVec3::Z)]).unwrap();
+        live.refresh(&gpu, &mut renderer, NOTHING).unwrap();
+        gpu.device().destroy();
+        let mut refresh = || live.refresh(&gpu, &mut renderer, LITTLE);
+        let is_lost = |refresh: &Result<_, _>| matches!(refresh, Err(LiveError::Gpu(GpuError::Lost { .. })));
+        let noticed = (0..1000).any(|_| {
+            std::thread::sleep(Duration::from_millis(1));
+            is_lost(&refresh())
+        });
+        assert!(noticed);
+        assert!((0..3).all(|_| is_lost(&refresh())));
     });
 }

@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use wheatstone_core::head::{Display, HeadMotion, Pose};
 use wheatstone_core::view::View;
 use wheatstone_render::live::{Activity, LiveView};
+use wheatstone_render::warp::{Picture, Shown, Warps};
+use wheatstone_render::{Gpu, GpuError};
 
 /// Room that a refresh has while it is found out what pictures take.
 const PROBE_BUDGET: Duration = Duration::from_millis(20);
@@ -16,9 +18,8 @@ const PROBE_BUDGET: Duration = Duration::from_millis(20);
 /// Pictures that are cast to find out what they take.
 const PROBES: u32 = 4;
 
-/// How late the device may be free for the warp, as a share of the time that is kept for it: to sleep, to wake up and to ask an idle
-/// device takes 0.5 ms.
-const LATE_SHARE: f64 = 0.5;
+/// Time that is kept for a warp, as a multiple of the longest in the probes.
+const RESERVED_WARPS: f64 = 1.5;
 
 /// How well casting has kept to its time during a motion.
 #[derive(Debug, Clone)]
@@ -27,7 +28,7 @@ pub(super) struct Keeping {
     pace: Pace,
     refreshes: usize,
     missed: usize,
-    /// Latest that the device was free after the time kept for the warp had begun, seconds.
+    /// Latest that a warp was done after its refresh, seconds; negative if all were early.
     latest_s: f64,
     /// Time that cells took, seconds.
     cast_s: f64,
@@ -44,6 +45,7 @@ impl Keeping {
             "case": self.case,
             "render_ms": 1e3 * self.pace.render_s,
             "period_ms": 1e3 * self.pace.display.period_s(),
+            "reserve_ms": 1e3 * self.pace.reserve_s,
             "refreshes": self.refreshes,
             "missed": self.missed,
             "latest_ms": 1e3 * self.latest_s,
@@ -53,10 +55,12 @@ impl Keeping {
 
     pub(super) fn to_line(&self) -> String {
         format!(
-            "{}: pictures of {:.0} ms, refreshes of {:.1} ms: {} of {} missed, {:.1} ms late at most, {:.0} % of the time casts",
+            "{}: pictures of {:.0} ms, refreshes of {:.1} ms with {:.1} ms for the warp: {} of {} missed, by {:.1} ms at most; \
+             {:.0} % of the other time casts",
             self.case,
             1e3 * self.pace.render_s,
             1e3 * self.pace.display.period_s(),
+            1e3 * self.pace.reserve_s,
             self.missed,
             self.refreshes,
             1e3 * self.latest_s,
@@ -65,20 +69,54 @@ impl Keeping {
     }
 }
 
-/// A display of which a picture takes so many refreshes, by what the device takes for some views of a motion.
+/// What turns the newest picture into what the eyes see: the quad warp, on the device.
+struct Screen {
+    warps: Warps,
+    picture: Picture,
+}
+
+impl Screen {
+    fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        Ok(Self { warps: Warps::new(gpu, Picture::FORMAT)?, picture: Picture::new(gpu, size)? })
+    }
+
+    /// Shows the front picture as a view wants it, and waits until that is done.
+    fn show(&self, gpu: &Gpu, live: &LiveView, wanted: &View) -> Result<(), Failure> {
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if let Some(front) = live.front()
+            && let Some((target, view)) = front.pictures().next()
+        {
+            let shown = Shown::new(target, view, front.prepared());
+            self.warps
+                .quad(gpu, &mut encoder, &shown, wanted, self.picture.view())
+                .map_err(Failure::input)?;
+        }
+        gpu.queue().submit([encoder.finish()]);
+        Ok(gpu.wait()?)
+    }
+}
+
+/// A display of which a picture takes so many refreshes, by what the device takes for some views of a motion and for warping
+/// them.
 pub(super) fn fitting_pace(
     engine: &mut LiveEngine<'_>,
     motion: &HeadMotion,
     like: &View,
     refreshes: f64,
-    reserve_s: f64,
+    least_reserve_s: f64,
 ) -> Result<Pace, Failure> {
     let mut live = engine.view(motion.eyes_at(0.0).view(like))?;
-    let mut render_s = 0.0;
+    let screen = Screen::new(engine.gpu, like.size)?;
+    let (mut render_s, mut reserve_s) = (0.0, least_reserve_s);
     for probe in 0..PROBES {
         let time_s = motion.duration_s() * f64::from(probe) / f64::from(PROBES);
         live.aim(&[motion.eyes_at(time_s).view(like)])?;
         render_s = complete(engine, &mut live)?;
+        let start = Instant::now();
+        screen.show(engine.gpu, &live, &motion.eyes_at(0.0).view(like))?;
+        if probe > 0 {
+            reserve_s = reserve_s.max(RESERVED_WARPS * start.elapsed().as_secs_f64());
+        }
     }
     let display = Display::new((render_s / refreshes + reserve_s).recip()).map_err(Failure::input)?;
     Ok(Pace { display, render_s, reserve_s })
@@ -114,7 +152,10 @@ pub(super) fn refreshes(
     let ahead_s = (pace.render_s / pace.available_s()).ceil() * period_s;
     let mut live = engine.view(motion.eyes_at(0.0).view(like))?;
     complete(engine, &mut live)?;
-    let mut keeping = Keeping { case, pace: *pace, refreshes: 0, missed: 0, latest_s: 0.0, cast_s: 0.0 };
+    let screen = Screen::new(engine.gpu, like.size)?;
+    screen.show(engine.gpu, &live, like)?;
+    let latest_s = f64::NEG_INFINITY;
+    let mut keeping = Keeping { case, pace: *pace, refreshes: 0, missed: 0, latest_s, cast_s: 0.0 };
     let (mut shown, mut picture) = (Vec::new(), 0);
     let start = Instant::now();
     let mut refresh = 0.0;
@@ -128,14 +169,14 @@ pub(super) fn refreshes(
         picture += u64::from(matches!(done.activity, Activity::Casting { completes_view: true, .. }));
         keeping.cast_s += done.measured.map_or(0.0, |measured| measured.cast_s);
         sleep_until(start, warp_begins_s);
-        engine.gpu.wait()?;
-        let late_s = start.elapsed().as_secs_f64() - warp_begins_s;
-        let is_missed = late_s > LATE_SHARE * pace.reserve_s;
+        refresh += 1.0;
+        let eyes = motion.eyes_at(refresh * period_s);
+        screen.show(engine.gpu, &live, &eyes.view(like))?;
+        let late_s = start.elapsed().as_secs_f64() - refresh * period_s;
+        let is_missed = late_s > 0.0;
         keeping.missed += usize::from(is_missed);
         keeping.refreshes += 1;
         keeping.latest_s = keeping.latest_s.max(late_s);
-        refresh += 1.0;
-        let eyes = motion.eyes_at(refresh * period_s);
         let front = live.front().and_then(|front| front.pictures().next());
         let cast_from = front.map_or(eyes, |(_, view)| Pose::of(&view));
         shown.push(Refresh { eyes, cast_from, picture, is_missed });
