@@ -143,13 +143,21 @@ impl Casting {
     }
 }
 
+/// What the eyes see in an area of some pixels, left one first.
+pub(crate) fn seen(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> {
+    Ok(state.stereo.views(&middle(state, size)?, state.camera.distance_m))
+}
+
 /// What is cast: a view for each eye, or one in the middle for both.
 fn views(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> {
-    let middle = state.camera.view(state.stereo.eye_size(size)).map_err(Failure::input)?;
-    Ok(match state.stereo.method {
-        EyeMethod::TwoCasts => state.stereo.views(&middle, state.camera.distance_m),
-        EyeMethod::OneCast => vec![middle],
-    })
+    match state.stereo.method {
+        EyeMethod::TwoCasts => seen(state, size),
+        EyeMethod::OneCast => Ok(vec![middle(state, size)?]),
+    }
+}
+
+fn middle(state: &State, size: [u32; 2]) -> Result<View, Failure> {
+    state.camera.view(state.stereo.eye_size(size)).map_err(Failure::input)
 }
 
 fn placement(grid: &Grid, look: &Look) -> Placement {

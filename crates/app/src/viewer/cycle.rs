@@ -2,8 +2,8 @@
 
 use super::canvas::{Canvas, Sheet, texture, write_texture};
 use super::capture::{Capture, Subject};
-use super::casting::Casting;
-use super::eyes;
+use super::casting::{Casting, seen};
+use super::eyes::{Eyes, Wanted};
 use super::report::Report;
 use super::screen::{Panels, Pictures, Screen};
 use super::script::{Due, Happening, Player, Status};
@@ -32,6 +32,7 @@ pub(crate) struct Viewer {
     session: Session,
     casting: Casting,
     screen: Screen,
+    eyes: Eyes,
     format: wgpu::TextureFormat,
     desk: Desk,
     context: Context,
@@ -67,6 +68,7 @@ impl Viewer {
         Ok(Self {
             casting: Casting::new(&gpu)?,
             screen: Screen::new(&gpu, canvas.format()),
+            eyes: Eyes::new(&gpu)?,
             format: canvas.format(),
             desk: Desk::new(),
             timings: Timings::default(),
@@ -117,7 +119,7 @@ impl Viewer {
     pub(crate) fn look_after(&mut self) -> Result<(), Failure> {
         let budget = self.refresh_time();
         let looked = self.casting.refresh(&self.gpu, budget);
-        self.survive(looked)
+        self.survive(looked).map(drop)
     }
 
     /// Takes in events, draws, shows, and hands over work.
@@ -133,7 +135,7 @@ impl Viewer {
         self.survive(followed)?;
         let mut panels = Panels::new(&self.context, &mut output.0, size);
         self.screen.update(&self.gpu, &mut panels);
-        let pictures = self.pictures(pixels);
+        let pictures = self.pictures(pixels)?;
         if let Some(sheet) = canvas.sheet(&self.gpu) {
             let submission = self.screen.draw(&self.gpu, &sheet.view(), &pictures, &panels);
             if let Sheet::Window(texture) = sheet {
@@ -176,7 +178,7 @@ impl Viewer {
     fn receive(&mut self, canvas: &Canvas) -> Result<(), Failure> {
         let Some(arrived) = self.session.step(&self.gpu) else { return Ok(()) };
         let received = self.casting.receive(&self.gpu, *arrived, self.session.state(), canvas.size());
-        self.survive(received)
+        self.survive(received).map(drop)
     }
 
     /// Does what a script has due; gives that, and a size that it asks for.
@@ -233,14 +235,19 @@ impl Viewer {
         (output, area)
     }
 
-    fn pictures(&self, area: Area) -> Pictures {
+    fn pictures(&mut self, area: Area) -> Result<Pictures, Failure> {
         let state = self.session.state();
-        Pictures {
-            arrangement: state.stereo.arrangement,
-            area,
-            background: state.look.background,
-            eyes: self.casting.front().and_then(eyes::pictures),
-        }
+        let (arrangement, background) = (state.stereo.arrangement, state.look.background);
+        let eyes = match (self.casting.front(), seen(state, area.size())) {
+            (Some(front), Ok(views)) => {
+                let wanted = Wanted { picture: self.casting.pictures(), views, warp: state.pace.warp };
+                self.eyes.show(&self.gpu, front, wanted)
+            }
+            (None, Ok(_)) => Ok(None),
+            (_, Err(failure)) => Err(failure),
+        };
+        let eyes = self.survive(eyes)?.flatten();
+        Ok(Pictures { arrangement, area, background, eyes })
     }
 
     /// Writes the files that are asked for.
@@ -253,7 +260,7 @@ impl Viewer {
             let written = self.write(&capture, pictures, panels, size);
             match written {
                 Ok(()) => self.session.notes.done(format!("wrote {}", capture.path.display())),
-                failed => self.survive(failed)?,
+                failed => drop(self.survive(failed)?),
             }
         }
         Ok(())
@@ -296,14 +303,14 @@ impl Viewer {
     }
 
     /// Notes a failure; a device that is gone ends the program.
-    fn survive(&mut self, outcome: Result<(), Failure>) -> Result<(), Failure> {
+    fn survive<T>(&mut self, outcome: Result<T, Failure>) -> Result<Option<T>, Failure> {
         match outcome {
             Err(Failure::Gpu(error @ (GpuError::Lost { .. } | GpuError::Hung { .. }))) => Err(error.into()),
             Err(failure) => {
                 self.session.notes.failed(failure.to_string());
-                Ok(())
+                Ok(None)
             }
-            Ok(()) => Ok(()),
+            Ok(made) => Ok(Some(made)),
         }
     }
 }

@@ -1,11 +1,184 @@
-//! What each eye is shown: the newest whole picture.
+//! What each eye is shown: the newest whole picture, as it looks from where the eye is now.
 
+use super::state::WarpName;
+use crate::failure::Failure;
+use glam::DVec3;
+use wheatstone_core::budget::Quality;
+use wheatstone_core::view::{Projection, View};
+use wheatstone_core::warp::{GridSettings, WarpError};
+use wheatstone_render::Gpu;
 use wheatstone_render::live::Front;
+use wheatstone_render::warp::{Shown, Warps};
 
-/// The textures of the left and the right eye; the same twice where there is one.
-pub(crate) fn pictures(front: &Front) -> Option<[wgpu::TextureView; 2]> {
-    let mut views = front.pictures().map(|(target, _)| target.color().create_view(&Default::default()));
-    let left = views.next()?;
-    let right = views.next().unwrap_or_else(|| left.clone());
-    Some([left, right])
+/// Of warped pictures: what a display shows, and what is interpolated fastest.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Most steps of the search for surfaces that software Vulkan has time for in a refresh: 3 to 5 ns each on two cores.
+const MOST_STEPS_ON_CPU: f64 = 4e6;
+
+/// Nearest depth that counts for how far surfaces move, metres.
+const NEAREST_M: f64 = 0.05;
+
+/// Warps to the eyes of a rig.
+pub(crate) struct Eyes {
+    warps: Warps,
+    pictures: Vec<wgpu::TextureView>,
+    shown: Option<Wanted>,
+}
+
+/// What tells one pair of pictures from another.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Wanted {
+    /// Counts the pictures that have been cast.
+    pub(crate) picture: u64,
+    /// What the eyes see, the left one first.
+    pub(crate) views: Vec<View>,
+    pub(crate) warp: WarpName,
+}
+
+/// How a picture is shown, and how finely.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    AsItIs,
+    Quad(Quality),
+    Grid(Quality),
+}
+
+impl Way {
+    /// The way that is asked for, or what of it a refresh has time for: the grid is searched pixel by pixel along as many
+    /// pixels as surfaces may have moved.
+    fn choose(gpu: &Gpu, front: &Front, shown: &View, wanted: &View, warp: WarpName) -> Self {
+        let quality = front.quality();
+        let moved_m = (eye_m(shown) - eye_m(wanted)).length();
+        match warp {
+            WarpName::None => Self::AsItIs,
+            WarpName::Quad => Self::Quad(quality),
+            // From where it was cast a picture is the same by any warp.
+            WarpName::Grid if moved_m == 0.0 => Self::Quad(quality),
+            WarpName::Grid => {
+                let corners = front.prepared().parameters().visible_corners_world();
+                let most_steps =
+                    if gpu.description().is_software { MOST_STEPS_ON_CPU } else { f64::INFINITY };
+                let columns = columns_moved(shown, moved_m, &corners);
+                let steps = |quality: &Quality| {
+                    quality.size(wanted.size).map(f64::from).iter().product::<f64>() * columns.max(1.0)
+                };
+                let coarser = (quality.level()..=Quality::COARSEST.level()).map(Quality::at);
+                coarser
+                    .into_iter()
+                    .find(|quality| steps(quality) <= most_steps)
+                    .map_or(Self::AsItIs, Self::Grid)
+            }
+        }
+    }
+}
+
+fn eye_m(view: &View) -> DVec3 {
+    view.view_from_world.inverse().translation
+}
+
+/// How far what is nearest moves at most when the eye does, pixels.
+fn columns_moved(shown: &View, moved_m: f64, corners: &[DVec3]) -> f64 {
+    let depth_m = |&corner: &DVec3| -shown.view_from_world.transform_point3(corner).z;
+    let nearest_m = corners.iter().map(depth_m).fold(f64::INFINITY, f64::min).max(NEAREST_M);
+    match shown.projection {
+        Projection::Perspective(lens) => {
+            f64::from(shown.size[0]) / (lens.right - lens.left) * moved_m / nearest_m
+        }
+        Projection::Orthographic(_) => 0.0,
+    }
+}
+
+impl Eyes {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, Failure> {
+        Ok(Self { warps: Warps::new(gpu, FORMAT)?, pictures: Vec::new(), shown: None })
+    }
+
+    /// The pictures of the left and the right eye (the same twice where there is one), as finely as the front picture is
+    /// cast. Submits what draws them, unless they are what was wanted last.
+    pub(crate) fn show(
+        &mut self,
+        gpu: &Gpu,
+        front: &Front,
+        wanted: Wanted,
+    ) -> Result<Option<[wgpu::TextureView; 2]>, Failure> {
+        if self.shown.as_ref() != Some(&wanted) {
+            self.shown = None;
+            self.draw(gpu, front, &wanted)?;
+            self.shown = Some(wanted);
+        }
+        let mut eyes = self.pictures.iter();
+        Ok(eyes.next().map(|left| [left.clone(), eyes.next().unwrap_or(left).clone()]))
+    }
+
+    fn draw(&mut self, gpu: &Gpu, front: &Front, wanted: &Wanted) -> Result<(), Failure> {
+        let sources: Vec<_> = front.pictures().collect();
+        let Some(last) = sources.len().checked_sub(1) else { return Ok(()) };
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.pictures.truncate(wanted.views.len());
+        for (eye, &view) in wanted.views.iter().enumerate() {
+            let (target, cast_from) = sources[eye.min(last)];
+            let shown = Shown::new(target, cast_from, front.prepared());
+            let way = Way::choose(gpu, front, &cast_from, &view, wanted.warp);
+            let view = match way {
+                Way::AsItIs => cast_from,
+                Way::Quad(quality) | Way::Grid(quality) => View { size: quality.size(view.size), ..view },
+            };
+            let into = self.picture(gpu, eye, view.size)?;
+            match way {
+                Way::AsItIs | Way::Quad(_) => self.warps.quad(gpu, &mut encoder, &shown, &view, &into),
+                Way::Grid(_) => {
+                    self.warps.grid(gpu, &mut encoder, &shown, &view, GridSettings::default(), &into)
+                }
+            }
+            .map_err(|error: WarpError| Failure::Internal(error.into()))?;
+        }
+        gpu.queue().submit([encoder.finish()]);
+        Ok(gpu.check()?)
+    }
+
+    /// Room for an eye's picture: that of the last one if it has the size.
+    fn picture(
+        &mut self,
+        gpu: &Gpu,
+        eye: usize,
+        [width, height]: [u32; 2],
+    ) -> Result<wgpu::TextureView, Failure> {
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        if let Some(kept) = self.pictures.get(eye).filter(|kept| kept.texture().size() == size) {
+            return Ok(kept.clone());
+        }
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("eye"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        gpu.check()?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        self.pictures.truncate(eye);
+        self.pictures.push(view.clone());
+        Ok(view)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::state::Camera;
+
+    #[test]
+    fn surfaces_move_by_as_much_as_the_nearest_does() {
+        let view = Camera::default().view([400, 300]).unwrap();
+        let world_from_view = view.view_from_world.inverse();
+        let corners = [-2.0, -1.0].map(|z| world_from_view.transform_point3(DVec3::new(0.0, 0.0, z)));
+        let Projection::Perspective(lens) = view.projection else { unreachable!() };
+        let expected = 0.1 / (lens.right - lens.left) * 400.0;
+        assert!((columns_moved(&view, 0.1, &corners) - expected).abs() < 1e-9);
+        assert_eq!(columns_moved(&view, 0.0, &corners), 0.0);
+    }
 }

@@ -8,6 +8,9 @@ const SHOWN_FOR: Duration = Duration::from_secs(6);
 /// Most messages at a time.
 const MOST: usize = 5;
 
+/// Most failures that are kept.
+const MOST_FAILURES: usize = 100;
+
 /// Whether something went well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tone {
@@ -23,7 +26,7 @@ pub(crate) struct Note {
     since: Instant,
 }
 
-/// The latest messages, and all failures that there have ever been.
+/// The latest messages, and the first failures.
 #[derive(Debug, Default)]
 pub(crate) struct Notes {
     latest: Vec<Note>,
@@ -39,7 +42,9 @@ impl Notes {
     /// Something that has failed.
     pub(crate) fn failed(&mut self, text: impl Into<String>) {
         let text = text.into();
-        self.failures.push(text.clone());
+        if self.failures.len() < MOST_FAILURES {
+            self.failures.push(text.clone());
+        }
         self.push(Tone::Failed, text);
     }
 
@@ -49,7 +54,7 @@ impl Notes {
         &self.latest
     }
 
-    /// Every failure of the session.
+    /// The failures of the session.
     pub(crate) fn failures(&self) -> &[String] {
         &self.failures
     }

@@ -2,6 +2,7 @@
 
 use super::show::{Area, Show};
 use super::state::Arrangement;
+use super::ui::PANEL;
 use egui::epaint::ClippedPrimitive;
 use egui::{FullOutput, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
@@ -47,7 +48,11 @@ impl Screen {
     pub(crate) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         Self {
             show: Show::new(gpu.device(), format),
-            panels: Renderer::new(gpu.device(), format, RendererOptions::default()),
+            panels: Renderer::new(
+                gpu.device(),
+                format,
+                RendererOptions { dithering: false, ..RendererOptions::default() },
+            ),
         }
     }
 
@@ -113,7 +118,7 @@ fn begin<'e>(encoder: &'e mut wgpu::CommandEncoder, sheet: &wgpu::TextureView) -
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                load: wgpu::LoadOp::Clear(wgpu::Color { r: PANEL[0], g: PANEL[1], b: PANEL[2], a: 1.0 }),
                 store: wgpu::StoreOp::Store,
             },
         })],

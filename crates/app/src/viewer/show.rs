@@ -44,6 +44,7 @@ pub(crate) struct Show {
     layout: wgpu::BindGroupLayout,
     pipelines: HashMap<Arrangement, wgpu::RenderPipeline>,
     uniform: wgpu::Buffer,
+    sampler: wgpu::Sampler,
 }
 
 impl Show {
@@ -53,7 +54,7 @@ impl Show {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
             ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
                 view_dimension: wgpu::TextureViewDimension::D2,
                 multisampled: false,
             },
@@ -69,9 +70,15 @@ impl Show {
             },
             count: None,
         };
+        let sampler_entry = wgpu::BindGroupLayoutEntry {
+            binding: 3,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            count: None,
+        };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("show"),
-            entries: &[uniform_entry, texture(1), texture(2)],
+            entries: &[uniform_entry, texture(1), texture(2), sampler_entry],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("show"),
@@ -109,7 +116,13 @@ impl Show {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { layout, pipelines, uniform }
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("interpolated"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { layout, pipelines, uniform, sampler }
     }
 
     /// Draws the pictures of the eyes (the same twice for one eye) into an area.
@@ -135,6 +148,7 @@ impl Show {
                 wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(eyes[0]) },
                 wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(eyes[1]) },
+                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&self.sampler) },
             ],
         });
         pass.set_pipeline(pipeline);

@@ -9,23 +9,16 @@ struct Show {
 @group(0) @binding(0) var<uniform> show: Show;
 @group(0) @binding(1) var left_eye: texture_2d<f32>;
 @group(0) @binding(2) var right_eye: texture_2d<f32>;
+@group(0) @binding(3) var interpolated: sampler;
 
 @vertex
 fn everywhere(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
     return vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-// The colour at a place of a picture (0 to 1), interpolated.
+// The colour at a place of a picture (0 to 1), over the background.
 fn color_at(picture: texture_2d<f32>, place: vec2f) -> vec3f {
-    let last = vec2i(textureDimensions(picture)) - 1;
-    let at = place * vec2f(textureDimensions(picture)) - 0.5;
-    let low = vec2i(floor(at));
-    let part = at - floor(at);
-    let a = clamp(low, vec2i(0), last);
-    let b = clamp(low + 1, vec2i(0), last);
-    let above = mix(textureLoad(picture, a, 0), textureLoad(picture, vec2i(b.x, a.y), 0), part.x);
-    let below = mix(textureLoad(picture, vec2i(a.x, b.y), 0), textureLoad(picture, b, 0), part.x);
-    let color = mix(above, below, part.y);
+    let color = textureSampleLevel(picture, interpolated, place, 0.0);
     return color.rgb + (1.0 - color.a) * show.background;
 }
 

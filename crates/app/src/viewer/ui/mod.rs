@@ -16,7 +16,7 @@ mod theme;
 mod toasts;
 mod transfer;
 
-pub(crate) use theme::dress;
+pub(crate) use theme::{PANEL, dress};
 
 use super::command::Command;
 use super::facts::Facts;
@@ -24,7 +24,7 @@ use super::job::Progress;
 use super::notes::Note;
 use super::state::{Edit, State};
 use super::timings::Timings;
-use egui::{CentralPanel, Panel, Rect, ScrollArea, Ui};
+use egui::{CentralPanel, Color32, Frame, Panel, Rect, ScrollArea, Ui};
 use pointer::Tool;
 use wheatstone_core::scene::Placement;
 
@@ -78,8 +78,10 @@ impl Desk {
         let mut asked = Asked::default();
         keys::listen(self, ui, shown.state, &mut asked);
         if !self.hides_panels {
-            Panel::right("panels").resizable(false).exact_size(PANEL_WIDTH).show(ui, |ui| {
-                Panel::bottom("pace").resizable(false).show(ui, |ui| {
+            // The window is cleared to the panels' colour.
+            let bare = Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT);
+            Panel::right("panels").resizable(false).frame(bare).exact_size(PANEL_WIDTH).show(ui, |ui| {
+                Panel::bottom("pace").resizable(false).frame(bare).show(ui, |ui| {
                     pace::show(ui, shown, &mut asked);
                     ui.horizontal(|ui| {
                         if ui.button("Keys  ?").clicked() {

@@ -8,6 +8,8 @@ pub(super) const ACCENT: Color32 = Color32::from_rgb(242, 160, 61);
 pub(super) const ALARM: Color32 = Color32::from_rgb(235, 87, 87);
 /// Lines over the picture.
 pub(super) const LINE: Color32 = Color32::from_rgb(200, 208, 220);
+/// Behind panels, 0 to 1.
+pub(crate) const PANEL: [f64; 3] = [24.0 / 255.0, 27.0 / 255.0, 33.0 / 255.0];
 /// Behind graphs.
 pub(super) const WELL: Color32 = Color32::from_rgb(14, 16, 20);
 
@@ -15,7 +17,6 @@ pub(super) const WELL: Color32 = Color32::from_rgb(14, 16, 20);
 pub(crate) fn dress(context: &Context) {
     context.set_theme(Theme::Dark);
     context.set_visuals(Visuals {
-        panel_fill: Color32::from_rgb(24, 27, 33),
         window_fill: Color32::from_rgb(28, 31, 38),
         extreme_bg_color: WELL,
         selection: egui::style::Selection {
