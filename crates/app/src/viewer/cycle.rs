@@ -23,9 +23,6 @@ const LOOK_AFTER: Duration = Duration::from_millis(3);
 /// How often messages are looked at.
 const READ_NOTES: Duration = Duration::from_millis(500);
 
-/// Part of a refresh that casting gets at least.
-const LEAST_SHARE: f64 = 0.25;
-
 /// Session, device and panels.
 pub(crate) struct Viewer {
     gpu: Arc<Gpu>,
@@ -151,8 +148,8 @@ impl Viewer {
         self.screen.free(&panels);
         self.drawn_pictures = self.casting.pictures();
         self.measure(begun);
-        let left = self.refresh_time().saturating_sub(begun.elapsed());
-        let budget = left.max(self.refresh_time().mul_f64(LEAST_SHARE));
+        let (whole, drawing) = (self.refresh_time(), self.last.1);
+        let budget = whole.saturating_sub(drawing).max(drawing.min(whole));
         let cast = self.casting.refresh(&self.gpu, budget);
         self.survive(cast)?;
         Ok(Refreshed { platform: output.0.platform_output, resize })

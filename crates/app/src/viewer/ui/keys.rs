@@ -85,7 +85,7 @@ const OTHERS: [(&str, &str); 9] = [
     ("W A S D Q E", "fly forward, left, back, right, down, up"),
     ("drag", "orbit, look around or window, as chosen"),
     ("Shift drag", "pan; also with the right button"),
-    ("Ctrl drag", "window: ↔ width, ↕ level"),
+    ("Ctrl drag", "window: right widens, up raises"),
     ("wheel", "come nearer; middle drag, too"),
     ("function: drag", "move a point"),
     ("function: double click", "add a point"),
