@@ -325,7 +325,8 @@ fn bench_warp_casts_live() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     let json = run.json();
     let live = &json["live"].as_array().unwrap()[0];
-    let live_keys = ["case", "cast_share", "latest_ms", "missed", "period_ms", "refreshes", "render_ms"];
+    let live_keys =
+        ["case", "cast_share", "latest_ms", "missed", "period_ms", "refreshes", "render_ms", "reserve_ms"];
     assert_eq!(keys(live), live_keys);
     let refreshes = live["refreshes"].as_f64().unwrap();
     let period_s = 1e-3 * live["period_ms"].as_f64().unwrap();

@@ -19,7 +19,7 @@ const PROBE_BUDGET: Duration = Duration::from_millis(20);
 const PROBES: u32 = 4;
 
 /// Time that is kept for a warp, as a multiple of the longest in the probes.
-const RESERVED_WARPS: f64 = 1.5;
+const RESERVED_WARPS: f64 = 2.0;
 
 /// How well casting has kept to its time during a motion.
 #[derive(Debug, Clone)]
