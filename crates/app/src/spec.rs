@@ -55,6 +55,23 @@ pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
     if fits { Ok(sides) } else { Err(allowed()) }
 }
 
+/// Sides of a window, points.
+const WINDOW_SIDES: RangeInclusive<u32> = 64..=4096;
+
+/// `WIDTHxHEIGHT` of a window in points.
+pub(crate) fn window_size(text: &str) -> Result<[u32; 2], String> {
+    separated(text, &['x', 'X'])
+        .filter(|sides: &[u32; 2]| sides.iter().all(|side| WINDOW_SIDES.contains(side)))
+        .ok_or_else(|| {
+            format!("must be WIDTHxHEIGHT, each from {} to {}", WINDOW_SIDES.start(), WINDOW_SIDES.end())
+        })
+}
+
+/// The nearest side that a window may have.
+pub(crate) fn clamped_side(side: u32) -> u32 {
+    side.clamp(*WINDOW_SIDES.start(), *WINDOW_SIDES.end())
+}
+
 /// `XxYxZ` in voxels; the reader checks the product.
 pub(crate) fn voxel_dims(text: &str) -> Result<[u64; 3], String> {
     separated(text, &['x', 'X'])
@@ -243,6 +260,8 @@ mod tests {
         for bad in ["0x5", "100000x100000", "16384x16384", "640", "640x480x3", "-1x5", "axb", ""] {
             assert!(picture_size(bad).is_err(), "{bad}");
         }
+        assert_eq!(window_size("1280x800"), Ok([1280, 800]));
+        assert!(window_size("1280x4097").is_err() && window_size("0x0").is_err());
         assert_eq!(phantom_dims("64"), Ok([64; 3]));
         assert_eq!(phantom_dims("4x5x6"), Ok([4, 5, 6]));
         assert!(phantom_dims("4x5").is_err() && phantom_dims("0").is_err());

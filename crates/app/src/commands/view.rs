@@ -24,7 +24,7 @@ pub(crate) struct ViewArgs {
     file: Option<PathBuf>,
 
     /// Width and height of the window, points.
-    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = spec::picture_size)]
+    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = spec::window_size)]
     size: [u32; 2],
 
     /// Play the events of a file: one JSON value a line.

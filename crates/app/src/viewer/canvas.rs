@@ -12,8 +12,15 @@ const FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::Rgba8Unorm, wgpu
 
 /// A surface of a window, or nothing but a size.
 pub(crate) enum Canvas {
-    Window { surface: wgpu::Surface<'static>, config: wgpu::SurfaceConfiguration },
-    Offscreen { texture: wgpu::Texture },
+    Window {
+        surface: wgpu::Surface<'static>,
+        config: wgpu::SurfaceConfiguration,
+        /// Whether the surface has the configuration.
+        is_configured: bool,
+    },
+    Offscreen {
+        texture: wgpu::Texture,
+    },
 }
 
 /// What one refresh is drawn on.
@@ -46,9 +53,7 @@ impl Canvas {
         config.format = format.ok_or_else(|| anyhow!("the window takes none of the formats {FORMATS:?}"))?;
         config.present_mode = wgpu::PresentMode::AutoVsync;
         config.desired_maximum_frame_latency = 1;
-        surface.configure(gpu.device(), &config);
-        gpu.check()?;
-        Ok(Self::Window { surface, config })
+        Ok(Self::Window { surface, config, is_configured: false })
     }
 
     /// A texture in the place of a window.
@@ -79,9 +84,9 @@ impl Canvas {
             return Ok(());
         }
         match self {
-            Self::Window { surface, config } => {
+            Self::Window { config, is_configured, .. } => {
                 [config.width, config.height] = size;
-                surface.configure(gpu.device(), config);
+                *is_configured = false;
             }
             Self::Offscreen { texture: old } => *old = texture(gpu, size, FORMATS[0])?,
         }
@@ -89,22 +94,35 @@ impl Canvas {
     }
 
     /// A sheet to draw on; none where the window cannot be drawn on just now.
-    pub(crate) fn sheet(&self, gpu: &Gpu) -> Option<Sheet> {
+    pub(crate) fn sheet(&mut self, gpu: &Gpu) -> Option<Sheet> {
+        if let Self::Window { surface, config, is_configured } = self
+            && !*is_configured
+        {
+            *is_configured = configure(gpu, surface, config);
+        }
         match self {
             Self::Offscreen { texture } => {
                 Some(Sheet::Offscreen(texture.create_view(&wgpu::TextureViewDescriptor::default())))
             }
-            Self::Window { surface, config } => match surface.get_current_texture() {
+            Self::Window { is_configured: false, .. } => None,
+            Self::Window { surface, is_configured, .. } => match surface.get_current_texture() {
                 wgpu::CurrentSurfaceTexture::Success(texture)
                 | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => Some(Sheet::Window(texture)),
                 wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
-                    surface.configure(gpu.device(), config);
+                    *is_configured = false;
                     None
                 }
                 _ => None,
             },
         }
     }
+}
+
+/// Configures a surface; whether that was possible. It is not while another thread gives the device work.
+fn configure(gpu: &Gpu, surface: &wgpu::Surface<'_>, config: &wgpu::SurfaceConfiguration) -> bool {
+    let scope = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);
+    surface.configure(gpu.device(), config);
+    pollster::block_on(scope.pop()).is_none()
 }
 
 /// A texture that can be drawn on and read.

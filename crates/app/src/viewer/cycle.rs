@@ -12,6 +12,7 @@ use super::show::Area;
 use super::timings::{Frame, Timings};
 use super::ui::{Desk, Shown, dress};
 use crate::failure::Failure;
+use crate::spec::clamped_side;
 use egui::{Context, PlatformOutput, RawInput, Rect, ViewportId};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -19,6 +20,9 @@ use wheatstone_render::{Gpu, GpuError};
 
 /// How often a cast under way is looked after.
 const LOOK_AFTER: Duration = Duration::from_millis(3);
+
+/// When a window that could not be drawn on is tried again.
+const TRY_AGAIN: Duration = Duration::from_millis(20);
 
 /// How often messages are looked at.
 const READ_NOTES: Duration = Duration::from_millis(500);
@@ -143,6 +147,8 @@ impl Viewer {
             self.report.shown(pictures.eyes.is_some());
             let due: Vec<Instant> = due.iter().map(|due| due.at).collect();
             self.report.latencies.record(&due, Instant::now());
+        } else {
+            self.repaint_at = Some(Instant::now() + TRY_AGAIN);
         }
         self.capture(&pictures, &panels, size)?;
         self.screen.free(&panels);
@@ -195,7 +201,7 @@ impl Viewer {
                 Happening::Drop(path) => {
                     self.session.perform(&super::command::Command::Open(path.clone()));
                 }
-                Happening::Resize(size) => resize = Some(*size),
+                Happening::Resize(size) => resize = Some(size.map(clamped_side)),
             }
         }
         (due, resize)
@@ -322,5 +328,6 @@ fn described_quality(casting: &Casting) -> String {
 fn area_in_pixels(area: Rect, pixels_per_point: f32) -> Area {
     let pixels = |points: f32| (points * pixels_per_point).round().max(0.0) as u32;
     let (left, top) = (pixels(area.left()), pixels(area.top()));
-    Area { left, top, width: pixels(area.right()) - left, height: pixels(area.bottom()) - top }
+    let (right, bottom) = (pixels(area.right()), pixels(area.bottom()));
+    Area { left, top, width: right.saturating_sub(left), height: bottom.saturating_sub(top) }
 }

@@ -55,7 +55,13 @@ pub(crate) fn read_steps(path: &Path) -> Result<Vec<Step>, Failure> {
 fn parse(text: &str) -> Result<Vec<Step>, String> {
     let is_step = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
     let step = |(number, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|error| format!("line {}: {error}", number + 1))
+        let at_line = |error: &dyn std::fmt::Display| format!("line {}: {error}", number + 1);
+        match serde_json::from_str(line).map_err(|error| at_line(&error))? {
+            Step::Press(name) if egui::Key::from_name(&name).is_none() => {
+                Err(at_line(&format!("no key is called {name:?}")))
+            }
+            step => Ok(step),
+        }
     };
     text.lines().enumerate().filter(|(_, line)| is_step(line)).map(step).collect()
 }
@@ -79,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_bad_line_is_named() {
-        for bad in ["{\"wait\": 5}", "{\"do\": {\"zoom\": \"x\"}}", "{", "7"] {
+        for bad in ["{\"wait\": 5}", "{\"do\": {\"zoom\": \"x\"}}", "{\"press\": \"Any\"}", "{", "7"] {
             let error = parse(&format!("{{\"wait_ms\": 5}}\n{bad}")).unwrap_err();
             assert!(error.starts_with("line 2:"), "{error}");
         }
