@@ -15,8 +15,8 @@ const SESSION: &str = r#"
 {"wait_for": "rest"}
 {"do": {"picture": "orbited.png"}}
 {"wait_for": "rest"}
-{"drag": {"from": [60, 150], "to": [60, 190], "ms": 60, "ctrl": true}}
-{"do": {"move_opacity_point": {"index": 1, "to": [0.6, 0.9]}}}
+{"drag": {"from": [60, 150], "to": [60, 190], "ms": 400, "ctrl": true}}
+{"drag": {"from": [616, 131], "to": [590, 170], "ms": 400}}
 {"do": {"clip_handles": true}}
 {"do": {"move_face": {"face": 3, "to": 0.5}}}
 {"do": {"clip_plane": {"normal": [0, 1, 0], "offset_m": -0.2}}}
@@ -83,6 +83,13 @@ fn assert_session(bench: &Bench, run: &Run) {
     assert!(lit(&left) > 500 && lit(&right) > 500 && left != right);
     let view = |name: &str| std::fs::read_to_string(bench.path(name)).unwrap();
     assert_eq!(view("view.json"), view("again.json"));
+    let saved: serde_json::Value = serde_json::from_str(&view("view.json")).unwrap();
+    let dragged = saved["transfer"]["opacity"][1].as_array().unwrap().clone();
+    assert!(
+        dragged.iter().all(|number| number.as_f64().unwrap() < 0.95),
+        "the last point, at 1: {dragged:?}"
+    );
+    assert_ne!(saved["transfer"]["window"], serde_json::json!([0.0, 1.0]), "Ctrl drag widens the window");
     assert!(lit(&picture(bench, "turn_0001.png")) > 500);
 }
 

@@ -13,7 +13,8 @@ struct LayeredRay {
 }
 
 fn begin_ray(ray: Ray, slot: u32) -> RayState {
-    if view.first_sample == 0u {
+    // As in `resume_parts`.
+    if view.first_sample == u32(slot == 0xffffffffu) {
         return start_ray(ray);
     }
     open_layer = states[slot].layer;

@@ -64,7 +64,9 @@ pub(super) fn show(
     }
     let under = picture.hover_pos().and_then(|pointer| nearest(&projection, &handles, pointer));
     if picture.drag_started() {
-        grip.0 = under;
+        // By now the pointer may have moved on.
+        let origin = ui.input(|input| input.pointer.press_origin());
+        grip.0 = origin.and_then(|origin| nearest(&projection, &handles, origin));
     }
     if !picture.dragged() {
         grip.0 = None;

@@ -31,6 +31,9 @@ use wheatstone_core::scene::Placement;
 /// Width of the panels, points.
 const PANEL_WIDTH: f32 = 310.0;
 
+/// Room for the scroll bar, points.
+const SCROLL_BAR: f32 = 10.0;
+
 /// What the panels show.
 pub(crate) struct Shown<'a> {
     pub(crate) state: &'a State,
@@ -108,6 +111,7 @@ impl Desk {
     }
 
     fn panels(&mut self, ui: &mut Ui, shown: &Shown<'_>, asked: &mut Asked) {
+        ui.set_max_width(ui.available_width() - SCROLL_BAR);
         files::show(&mut self.files, ui, shown, asked);
         field::section(ui, "Transfer function", true, |ui| {
             transfer::show(&mut self.transfer, ui, shown, asked);

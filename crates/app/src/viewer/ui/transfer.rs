@@ -18,7 +18,7 @@ const STRIP: f32 = 16.0;
 /// How near the pointer must come, points.
 const REACH: f32 = 10.0;
 
-/// Strips that the area under the opacity is drawn in, and bars of the histogram.
+/// Strips that the opacity and the area under it are drawn in, and bars of the histogram.
 const STRIPS: usize = 128;
 
 /// Names that `--tf` takes, too.
@@ -115,7 +115,6 @@ fn opacity_graph(grip: &mut Grip, ui: &mut Ui, shown: &Shown<'_>, asked: &mut As
         [at, alpha_of((inner.bottom() - pointer.y) / inner.height())]
     };
     let places: Vec<Pos2> = transfer.opacity.iter().map(place).collect();
-    painter.add(Shape::line(places.clone(), Stroke::new(1.5, Color32::WHITE)));
     let act = follow(&mut grip.opacity, &response, &places);
     for (index, &place) in places.iter().enumerate() {
         let is_active = grip.opacity == Some(index);
@@ -196,7 +195,9 @@ fn follow(held: &mut Option<usize>, response: &Response, places: &[Pos2]) -> Opt
     let pointer = response.interact_pointer_pos();
     let under = pointer.and_then(|pointer| nearest(places, pointer));
     if response.drag_started_by(PointerButton::Primary) {
-        *held = under;
+        // By now the pointer may have moved on.
+        let origin = response.ctx.input(|input| input.pointer.press_origin());
+        *held = origin.and_then(|origin| nearest(places, origin));
     }
     if !response.dragged() {
         *held = None;
@@ -253,8 +254,10 @@ fn draw_function(painter: &Painter, area: Rect, function: &TransferFunction) {
         );
         mesh.colored_vertex(pos2(x, area.bottom()), color);
     }
+    let curve = mesh.vertices.iter().step_by(2).map(|vertex| vertex.pos).collect();
     join_strips(&mut mesh);
     painter.add(mesh);
+    painter.add(Shape::line(curve, Stroke::new(1.5, Color32::WHITE)));
 }
 
 /// Makes quads of pairs of vertices, one pair after the other.
