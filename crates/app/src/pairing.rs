@@ -102,7 +102,9 @@ impl FormName {
 /// How much is done for a derived picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum QualityName {
-    /// Samples of the other eye's rays alone.
+    /// Samples of the other eye's rays, each in the nearest column.
+    Nearest,
+    /// Samples of the other eye's rays, shared by the two columns that they are between.
     Fast,
     /// Where its error would show, the picture is cast; only of strips.
     Repaired,
@@ -112,6 +114,7 @@ impl QualityName {
     /// Name as on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
+            Self::Nearest => "nearest",
             Self::Fast => "fast",
             Self::Repaired => "repaired",
         }
@@ -119,6 +122,7 @@ impl QualityName {
 
     fn quality(self) -> Quality {
         match self {
+            Self::Nearest => Quality::Nearest,
             Self::Fast => Quality::Fast,
             Self::Repaired => Quality::Repaired,
         }

@@ -302,7 +302,7 @@ pub(crate) struct VariantPipelines {
     root: &'static str,
     entry_point: &'static str,
     /// The files of slots that no variant chooses.
-    fixed: &'static [(&'static str, &'static str)],
+    fixed: Vec<(&'static str, &'static str)>,
     built: HashMap<Variant, wgpu::ComputePipeline>,
 }
 
@@ -317,8 +317,9 @@ impl VariantPipelines {
         layout: wgpu::PipelineLayout,
         root: &'static str,
         entry_point: &'static str,
-        fixed: &'static [(&'static str, &'static str)],
+        fixed: &[(&'static str, &'static str)],
     ) -> Self {
+        let fixed = fixed.to_vec();
         Self { layout, root, entry_point, fixed, built: HashMap::new() }
     }
 
@@ -352,7 +353,7 @@ impl VariantPipelines {
     }
 
     fn build(&self, device: &wgpu::Device, variant: Variant) -> Result<wgpu::ComputePipeline, GpuError> {
-        let choices = [&variant.choices(), self.fixed].concat();
+        let choices = [&variant.choices()[..], &self.fixed].concat();
         let files = KernelFiles { root: self.root, choices: &choices, entry_point: self.entry_point };
         build(device, Some(&self.layout), &files)
     }

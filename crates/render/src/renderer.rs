@@ -46,8 +46,8 @@ pub struct Renderer {
     strip_passes: HashMap<Quality, StripPass>,
     repair_pass: Option<RepairPass>,
     repairs: Option<Repairs>,
-    pair_tile_pass: Option<PairTilePass>,
-    layer_passes: HashMap<LayerFormat, LayerPass>,
+    pair_tile_passes: HashMap<Quality, PairTilePass>,
+    layer_passes: HashMap<(LayerFormat, Quality), LayerPass>,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
@@ -144,7 +144,7 @@ impl Renderer {
             strip_passes: HashMap::new(),
             repair_pass: None,
             repairs: None,
-            pair_tile_pass: None,
+            pair_tile_passes: HashMap::new(),
             layer_passes: HashMap::new(),
             sampler,
             unused,
@@ -368,14 +368,16 @@ impl Renderer {
         self.states.insert(kept.unwrap_or_else(new)).clone()
     }
 
-    /// Tiles of pairs, made when first asked for.
-    pub(crate) fn tiles(&mut self, gpu: &Gpu) -> &mut PairTilePass {
-        self.pair_tile_pass.get_or_insert_with(|| PairTilePass::new(&gpu.device, &self.groups))
+    /// Tiles of pairs of a quality, made when first asked for.
+    pub(crate) fn tiles(&mut self, gpu: &Gpu, quality: Quality) -> &mut PairTilePass {
+        let make = || PairTilePass::new(&gpu.device, &self.groups, quality);
+        self.pair_tile_passes.entry(quality).or_insert_with(make)
     }
 
-    /// Layers of a format, made when first asked for.
-    pub(crate) fn layers(&mut self, gpu: &Gpu, format: LayerFormat) -> &mut LayerPass {
-        self.layer_passes.entry(format).or_insert_with(|| LayerPass::new(&gpu.device, &self.groups, format))
+    /// Layers of a format and quality, made when first asked for.
+    pub(crate) fn layers(&mut self, gpu: &Gpu, format: LayerFormat, quality: Quality) -> &mut LayerPass {
+        let make = || LayerPass::new(&gpu.device, &self.groups, format, quality);
+        self.layer_passes.entry((format, quality)).or_insert_with(make)
     }
 
     /// The bindings of a target, of the rays that are kept and of the tiles that are listed.

@@ -9,7 +9,7 @@ use glam::{DVec3, Mat3, Vec3};
 use std::ops::Range;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::MAX_DIRECTIONS;
-use wheatstone_core::stereo::{Epipolar, SlabRange};
+use wheatstone_core::stereo::{Epipolar, SlabRange, Slabs};
 use wheatstone_core::view::{RayField, View};
 
 /// A WGSL `mat3x3f`: columns padded to 16 bytes.
@@ -96,12 +96,18 @@ pub(crate) struct PairUniform {
 }
 
 impl PairUniform {
-    /// Strips of so many columns over some sweep columns.
-    pub(crate) fn new(epipolar: &Epipolar, slabs: SlabRange, columns: &Range<i32>, width: u32) -> Self {
+    /// Strips of so many columns over some sweep columns, and slabs between some planes.
+    pub(crate) fn new(
+        epipolar: &Epipolar,
+        planes: &Slabs,
+        slabs: SlabRange,
+        columns: &Range<i32>,
+        width: u32,
+    ) -> Self {
         let column_count = columns.len() as u32;
         Self {
             k: epipolar.k() as f32,
-            offset: (epipolar.c() + 0.5) as f32,
+            offset: planes.offset() as f32,
             furthest: slabs.furthest,
             nearest: slabs.nearest,
             first_column: columns.start,

@@ -214,8 +214,11 @@ impl StereoBenchArgs {
     /// What is asked for and can be made, with a note of what is asked for by name and cannot.
     fn pairings(&self) -> Result<Vec<Pairing>, Failure> {
         let forms = if self.methods.is_empty() { FormName::value_variants() } else { &self.methods };
-        let qualities =
-            if self.qualities.is_empty() { QualityName::value_variants() } else { &self.qualities };
+        let qualities = if self.qualities.is_empty() {
+            &[QualityName::Fast, QualityName::Repaired][..]
+        } else {
+            &self.qualities
+        };
         let of_form =
             |&form| qualities.iter().map(move |&quality| Pairing { form, quality, reference: Eye::Left });
         let can_be_made =

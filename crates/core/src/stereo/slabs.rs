@@ -22,6 +22,11 @@ impl Slabs {
         Self { k, offset, furthest: ((-offset).floor() as i32).saturating_add(1) }
     }
 
+    /// Slab m is where k / z is in `(m − 1 + offset, m + offset]`.
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
     /// The slab of a depth above 0, metres. Nearer is larger; what would be past `i32` is the last that `i32` holds.
     pub fn at(&self, depth_m: f64) -> i32 {
         let m = ((self.k / depth_m - self.offset).ceil() as i32).max(self.furthest);

@@ -1,5 +1,6 @@
 import package::lib::accumulate::{accumulate};
 import package::lib::cast_parameters::{parameters};
+import package::lib::join::{joint_of};
 import package::lib::ray::{Ray, ray_depth_m};
 import package::lib::ray_state::{STRETCH, new_ray_state};
 import package::lib::segment_sink::{SegmentPlace, put_segment};
@@ -23,9 +24,9 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
         stretches += 1u + segment.samples / STRETCH;
         leaps += segment.map_reads;
         segment.scalar *= ray.step_length * parameters.xray_scale;
-        put_segment(place, slab, segment);
+        put_segment(place, slab, joint_of(segment), segment.depth_m);
         slab--;
     }
     state.is_finished |= select(0u, 1u, slab < last && furthest <= last);
-    return SegmentedRay(0u, slab + 1, 0u, state, state);
+    return SegmentedRay(0u, slab + 1, 0u, 0.0, vec4f(0.0), state, state);
 }

@@ -1,6 +1,7 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{SEARCHES, blend};
+import package::lib::join::{join};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, RayState, STRETCH};
 import package::lib::segment_sink::{SegmentPlace, put_segment};
@@ -8,11 +9,12 @@ import package::lib::segmented_ray::{SegmentedRay, is_spent, leaps, stretches};
 import package::lib::shade::{SHADING_IS_DEAR};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::slabs::{end_of_slab, slab_at};
+import package::lib::splat::{splat};
 import package::lib::view::{view};
 import package::lib::volume::{value_at};
 
 // Rays of the reference view cut into segments, one for each slab of depth: all samples of a slab land on the same derived
-// column. `depth_m` of a segment is that of its first sample.
+// columns. `depth_m` of a segment is that of its first sample.
 
 // A ray with a segment behind what it holds.
 fn append(before: RayState, segment: RayState) -> RayState {
@@ -25,25 +27,43 @@ fn append(before: RayState, segment: RayState) -> RayState {
     return state;
 }
 
-// Hands the segment over that a ray has left behind.
-fn leave_segment(place: SegmentPlace, before: SegmentedRay) -> SegmentedRay {
+// Hands over the segment that a ray has left behind, if it is not clear, with what was carried on to its slab, and carries on what
+// of it belongs to the next one.
+fn leave_segment(ray: Ray, place: SegmentPlace, before: SegmentedRay) -> SegmentedRay {
     var under_way = before;
     if under_way.segment.transmittance < 1.0 {
-        put_segment(place, under_way.slab, under_way.segment);
+        let parts = splat(ray, under_way);
+        put_segment(place, under_way.slab, join(under_way.carried, parts.here), under_way.segment.depth_m);
         under_way.state = append(under_way.state, under_way.segment);
+        under_way.carried = parts.next;
+        under_way.slab--;
         under_way.segment.color = vec3f(0.0);
         under_way.segment.transmittance = 1.0;
+        under_way.moment = 0.0;
+    }
+    return under_way;
+}
+
+// Hands over what was carried on to a slab, unless a ray goes on there: it goes on in `slab`.
+fn leave_carried(place: SegmentPlace, slab: i32, before: SegmentedRay) -> SegmentedRay {
+    var under_way = before;
+    while under_way.carried.a > 0.0 && slab < under_way.slab {
+        put_segment(place, under_way.slab, under_way.carried, under_way.segment.depth_m);
+        under_way.carried = vec4f(0.0);
     }
     return under_way;
 }
 
 // Leaves the segment, and begins that of the next sample's slab.
 fn enter_slab(ray: Ray, place: SegmentPlace, before: SegmentedRay) -> SegmentedRay {
-    var under_way = leave_segment(place, before);
-    under_way.segment.depth_m = ray_depth_m(ray, f32(under_way.next));
+    var under_way = leave_segment(ray, place, before);
+    let depth_m = ray_depth_m(ray, f32(under_way.next));
     // A ray has one segment in each slab, however the bounds are rounded.
-    under_way.slab = min(slab_at(under_way.segment.depth_m), under_way.slab - 1);
-    under_way.slab_end = max(end_of_slab(ray, under_way.slab), under_way.next + 1u);
+    let slab = min(slab_at(depth_m), under_way.slab);
+    under_way = leave_carried(place, slab, under_way);
+    under_way.segment.depth_m = depth_m;
+    under_way.slab = slab;
+    under_way.slab_end = max(end_of_slab(ray, slab), under_way.next + 1u);
     return under_way;
 }
 
@@ -92,7 +112,9 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
                 under_way.next++;
             }
             if is_found {
+                let transmittance = under_way.segment.transmittance;
                 under_way.segment = blend(ray, under_way.next, value, under_way.segment);
+                under_way.moment += (transmittance - under_way.segment.transmittance) * f32(under_way.next);
             }
             under_way.segment.scalar = value;
             under_way.next++;
@@ -106,7 +128,7 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
     }
     under_way.state.is_finished |= select(0u, 1u, under_way.next >= ray.sample_count);
     if under_way.state.is_finished == 1u || under_way.next >= end {
-        under_way = leave_segment(place, under_way);
+        under_way = leave_carried(place, furthest - 1, leave_segment(ray, place, under_way));
     }
     return under_way;
 }

@@ -43,11 +43,11 @@ fn note_columns(place: SegmentPlace, first: i32, last: i32) {
     }
 }
 
-// Notes what a ray leaves out that is opaque: the derived columns of the slabs behind. `noted` are the first and the last that
+// Notes what a ray leaves out that is opaque: the derived columns of the slabs behind and the one after them. `noted` are the first and the last that
 // have been looked at for rays of later columns; what these left open is noted. Returns the first and the last by now.
 fn note_cut(place: SegmentPlace, ray: Ray, ended: SegmentedRay, noted: vec2i) -> vec2i {
-    let first = place.column - ended.slab + 1;
-    let last = place.column - slab_at(ray_depth_m(ray, f32(ray.sample_count) - 0.5));
+    let first = place.column - ended.slab;
+    let last = place.column - slab_at(ray_depth_m(ray, f32(ray.sample_count) - 0.5)) + 1;
     let is_cut = ended.state.transmittance <= 1.0 - parameters.termination_alpha && last >= first;
     if !is_cut || ray.sample_count == 0u {
         return noted;

@@ -8,10 +8,14 @@ import package::lib::view::{view};
 struct SegmentedRay {
     // The next sample.
     next: u32,
-    // The segment's slab; nearer than all before the first.
+    // The segment's slab; nearer than all before the first, the next one while there is no segment.
     slab: i32,
     // The first sample behind it.
     slab_end: u32,
+    // Sum of the segment's sample numbers, each by what it adds to the opacity.
+    moment: f32,
+    // What of the segment before belongs to this slab.
+    carried: vec4f,
     // What the ray holds in front of the segment.
     state: RayState,
     // What it holds in the segment.
@@ -35,5 +39,5 @@ fn is_spent() -> bool {
 fn start_segments(ray: Ray) -> SegmentedRay {
     var state = start_ray(ray);
     state.is_finished = select(0u, 1u, ray.sample_count == 0u);
-    return SegmentedRay(0u, view.pair.nearest + 1, 0u, state, state);
+    return SegmentedRay(0u, view.pair.nearest + 1, 0u, 0.0, vec4f(0.0), state, state);
 }

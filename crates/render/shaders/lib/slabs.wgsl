@@ -11,6 +11,11 @@ fn slab_at(depth_m: f32) -> i32 {
     return clamp(i32(ceil(view.pair.k / depth_m - view.pair.offset)), view.pair.furthest, view.pair.nearest);
 }
 
+// How far right of its slab's largest shift a sample lands, columns from 0 to 1.
+fn fraction_of_slab(slab: i32, depth_m: f32) -> f32 {
+    return clamp(f32(slab) + view.pair.offset - view.pair.k / depth_m, 0.0, 1.0);
+}
+
 // Depths at which a slab begins and ends, metres.
 fn bounds_of_slab_m(slab: i32) -> vec2f {
     let over = f32(slab) + view.pair.offset;

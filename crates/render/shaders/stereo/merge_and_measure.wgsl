@@ -11,8 +11,8 @@ const BLANK_TILE: f32 = 0.0;
 const DERIVED_TILE: f32 = 1.0;
 const CUT_TILE: f32 = 2.0;
 
-// Of each tile: the sums of its pixels' grey levels and of their squares, the mean square of what pixels change from column to
-// column, or from row to row if that is more, and what is in it.
+// Of each tile: the sums of its pixels' grey levels and of their squares, the mean square of how much changes from column to
+// column change, and what is in it.
 @group(3) @binding(5) var measures: texture_storage_2d<rgba32float, write>;
 
 fn merged_in_row(column: i32, row: u32) -> Merged {
@@ -28,7 +28,7 @@ fn merge_and_measure(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
     let tile = tile_of_invocation(group, local);
     var sum = 0.0;
     var sum_of_squares = 0.0;
-    var changes = vec2f(0.0);
+    var bends = 0.0;
     var alpha = 0.0;
     var is_cut = false;
     for (var y = tile.first.y; y < tile.end.y; y++) {
@@ -40,10 +40,8 @@ fn merge_and_measure(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
             let grey = grey_of(here);
             sum += grey;
             sum_of_squares += grey * grey;
-            let from_left = here.pixel.color.rgb - before.pixel.color.rgb;
-            let to_right = after.pixel.color.rgb - here.pixel.color.rgb;
-            let down = merged_in_row(i32(x), min(y + 1u, view.height - 1u)).pixel.color.rgb - here.pixel.color.rgb;
-            changes += vec2f(0.5 * (dot(from_left, from_left) + dot(to_right, to_right)), dot(down, down)) / 3.0;
+            let bend = before.pixel.color.rgb + after.pixel.color.rgb - 2.0 * here.pixel.color.rgb;
+            bends += dot(bend, bend) / 3.0;
             alpha += here.pixel.color.a;
             is_cut |= here.is_cut;
             before = here;
@@ -52,5 +50,5 @@ fn merge_and_measure(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
     }
     let holds = select(select(BLANK_TILE, DERIVED_TILE, alpha > 0.0), CUT_TILE, is_cut);
     let pixels = f32(TILE.x * TILE.y);
-    textureStore(measures, tile.first / TILE, vec4f(sum, sum_of_squares, max(changes.x, 0.4 * changes.y) / pixels, holds));
+    textureStore(measures, tile.first / TILE, vec4f(sum, sum_of_squares, bends / pixels, holds));
 }

@@ -1,7 +1,5 @@
-import package::lib::join::{joint_of};
 import package::lib::layers::{layer_of};
 import package::lib::layer_target::{layers};
-import package::lib::ray_state::{RayState};
 import package::lib::view::{view};
 
 // Segments go into the layer of their ray.
@@ -13,9 +11,9 @@ struct SegmentPlace {
 }
 
 // Writes a segment at the derived column of its slab.
-fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
+fn put_segment(place: SegmentPlace, slab: i32, segment: vec4f, depth_m: f32) {
     let column = place.column - slab;
     if column >= 0 && column < i32(view.width) {
-        textureStore(layers, vec2i(column, i32(place.row)), layer_of(place.column), joint_of(segment));
+        textureStore(layers, vec2i(column, i32(place.row)), layer_of(place.column), segment);
     }
 }

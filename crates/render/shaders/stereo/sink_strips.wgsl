@@ -1,5 +1,5 @@
-import package::lib::join::{join, joint_of};
-import package::lib::ray_state::{FIRST_HIT_ALPHA, RayState};
+import package::lib::join::{join};
+import package::lib::ray_state::{FIRST_HIT_ALPHA};
 import package::lib::strips::{partial_at, partial_depths_m, partials};
 
 // Segments go into the partial sums of their strip.
@@ -12,11 +12,11 @@ struct SegmentPlace {
 }
 
 // Puts a segment behind what others have left in the derived column of its slab.
-fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
+fn put_segment(place: SegmentPlace, slab: i32, segment: vec4f, depth_m: f32) {
     let at = partial_at(place.row, place.strip, place.column - slab);
     let held = partials[at];
-    partials[at] = join(held, joint_of(segment));
+    partials[at] = join(held, segment);
     if held.a < FIRST_HIT_ALPHA {
-        partial_depths_m[at] = segment.depth_m;
+        partial_depths_m[at] = depth_m;
     }
 }

@@ -1,5 +1,4 @@
-import package::lib::join::{join, joint_of};
-import package::lib::ray_state::{RayState};
+import package::lib::join::{join};
 
 // Segments go into the memory of the workgroup, for a round of slabs.
 
@@ -25,11 +24,11 @@ fn slot_at(lane: u32, slab_from_nearest: u32) -> u32 {
 }
 
 // Puts a segment behind what its slot holds. Rounding may put a sample into the slab beside those of its round.
-fn put_segment(place: SegmentPlace, slab: i32, segment: RayState) {
+fn put_segment(place: SegmentPlace, slab: i32, segment: vec4f, depth_m: f32) {
     let at = slot_at(place.lane, u32(clamp(place.nearest - slab, 0, i32(ROUND_SLABS) - 1)));
     let held = segments[at];
-    segments[at] = join(held, joint_of(segment));
-    segment_depths_m[at] = select(segment_depths_m[at], segment.depth_m, held.a == 0.0);
+    segments[at] = join(held, segment);
+    segment_depths_m[at] = select(segment_depths_m[at], depth_m, held.a == 0.0);
 }
 
 fn empty_slots(lane: u32) {

@@ -84,6 +84,8 @@ files! {
     "lib/skip_blocks",
     "lib/skip_none",
     "lib/slabs",
+    "lib/splat_linear",
+    "lib/splat_nearest",
     "lib/strip_bands",
     "lib/strips",
     "lib/sweep",

@@ -4,11 +4,10 @@
 //! slab's middle.
 
 use super::pair::{Eye, PairFrame, PairReport};
-use super::{LayerFormat, PairError};
+use super::{LayerFormat, PairError, Quality, Splat};
 use crate::cast_pass::VariantPipelines;
 use crate::groups::{GroupLayouts, bind, layout};
 use crate::pacer::BAND_ROWS;
-use crate::uniforms::PairUniform;
 
 impl LayerFormat {
     fn texture_format(self) -> wgpu::TextureFormat {
@@ -26,13 +25,12 @@ impl LayerFormat {
     }
 
     /// The files of the casting kernel's slots.
-    fn files(self) -> &'static [(&'static str, &'static str)] {
+    fn files(self) -> [(&'static str, &'static str); 2] {
         match self {
-            Self::Rgba8Unorm => &[
-                ("lib/segment_sink", "stereo/sink_layers"),
-                ("lib/layer_target", "stereo/layers_rgba8unorm"),
-            ],
-            Self::Rgba16Float => &[
+            Self::Rgba8Unorm => {
+                [("lib/segment_sink", "stereo/sink_layers"), ("lib/layer_target", "stereo/layers_rgba8unorm")]
+            }
+            Self::Rgba16Float => [
                 ("lib/segment_sink", "stereo/sink_layers"),
                 ("lib/layer_target", "stereo/layers_rgba16float"),
             ],
@@ -53,7 +51,12 @@ pub(crate) struct LayerPass {
 
 impl LayerPass {
     /// Nothing built yet.
-    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts, format: LayerFormat) -> Self {
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        groups: &GroupLayouts,
+        format: LayerFormat,
+        quality: Quality,
+    ) -> Self {
         let view_dimension = wgpu::TextureViewDimension::D2Array;
         let written = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
@@ -78,14 +81,14 @@ impl LayerPass {
             pipeline_layout(&cast_layout),
             "stereo/cast_layers",
             "cast_layers",
-            format.files(),
+            &[&format.files()[..], &[Splat::of(quality).file()]].concat(),
         );
         Self { format, cast_layout, cast, composite_layout, composite, layers: None }
     }
 
     /// Makes a pair.
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
-        let PairFrame { gpu, prepared, epipolar, slabs, columns, .. } = frame;
+        let PairFrame { gpu, prepared, slabs, .. } = frame;
         frame.check_whole_rays()?;
         let bytes = slabs.layer_bytes(frame.size(), self.format.bytes_per_pixel());
         let pipeline = self.cast.pipeline(gpu, prepared.variant)?;
@@ -95,7 +98,7 @@ impl LayerPass {
             encoder.clear_texture(&layers, &wgpu::ImageSubresourceRange::default());
         })?;
 
-        let pair = PairUniform::new(epipolar, *slabs, columns, BAND_ROWS);
+        let pair = frame.uniform(BAND_ROWS);
         let view = layers.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
@@ -157,8 +160,10 @@ mod tests {
     fn the_pass_builds_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        for format in [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float] {
-            let pass = LayerPass::new(&device, &GroupLayouts::new(&device), format);
+        let kinds = [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float]
+            .map(|format| [Quality::Nearest, Quality::Fast].map(|quality| (format, quality)));
+        for (format, quality) in kinds.into_iter().flatten() {
+            let pass = LayerPass::new(&device, &GroupLayouts::new(&device), format, quality);
             [pass.cast, pass.composite].iter().for_each(|pipelines| pipelines.build_all_of_pairs(&device));
         }
         if let Some(error) = pollster::block_on(scope.pop()) {

@@ -27,12 +27,14 @@ pub enum LayerFormat {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Quality {
-    /// Segments of the reference eye's rays alone: samples are up to half a column off, and what these rays do not see behind
-    /// an edge is missing.
+    /// As SP: segments of the reference eye's rays alone, each in the nearest column. Samples are up to half a column off, and
+    /// what these rays do not see behind an edge is missing.
+    Nearest,
+    /// Segments are shared by the two columns that they are between (DESIGN §5.3); X-rays are as by [`Quality::Nearest`].
     #[default]
     Fast,
-    /// Tiles where that would show are cast directly (DESIGN §5.3): where rays ended that the derived eye would have needed, and
-    /// where the picture is rough. Only strips are repaired.
+    /// Tiles where errors would show are cast directly (DESIGN §5.3): where rays ended that the derived eye would have needed, and
+    /// where the picture is fine-grained. Only strips are repaired.
     Repaired,
 }
 

@@ -5,6 +5,7 @@ mod layers;
 mod method;
 mod pair;
 mod repair;
+mod splat;
 mod strips;
 mod tiles;
 
@@ -13,5 +14,6 @@ pub(crate) use layers::LayerPass;
 pub use method::{Form, LayerFormat, PairMethod, Quality};
 pub use pair::PairReport;
 pub(crate) use repair::{RepairPass, Repairs};
+pub(crate) use splat::Splat;
 pub(crate) use strips::StripPass;
 pub(crate) use tiles::PairTilePass;

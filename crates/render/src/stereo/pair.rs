@@ -1,6 +1,6 @@
 //! One pair of pictures.
 
-use super::{Form, PairError, PairMethod, Quality, Repairs};
+use super::{Form, PairError, PairMethod, Quality, Repairs, Splat};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::Bindings;
 use crate::pacer::{ITERATION_LIMIT, LOCKSTEP_RAYS, spreading_stride};
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Mode;
-use wheatstone_core::stereo::{Epipolar, SlabRange};
+use wheatstone_core::stereo::{Epipolar, SlabRange, Slabs};
 
 /// What a pair has taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -34,7 +34,9 @@ pub(crate) struct PairFrame<'a> {
     pub(crate) gpu: &'a Gpu,
     pub(crate) prepared: &'a Prepared,
     pub(crate) epipolar: &'a Epipolar,
-    /// Slabs that the volume is in.
+    /// Slabs of depth whose segments go to the same columns.
+    planes: Slabs,
+    /// Slabs that segments are put into.
     pub(crate) slabs: SlabRange,
     /// Sweep columns of the rays that meet the volume and that either picture needs.
     pub(crate) columns: Range<i32>,
@@ -78,12 +80,12 @@ impl Renderer {
             return Err(PairError::Unrepaired);
         }
         let repairs = (method.quality == Quality::Repaired).then(|| self.repairs(gpu, size));
-        let frame = self.pair_frame(gpu, prepared, epipolar, repairs, &mut targets);
+        let frame = self.pair_frame(gpu, prepared, epipolar, repairs, method.quality, &mut targets);
         let Some(frame) = frame else { return Ok(PairReport::default()) };
         let report = match method.form {
             Form::Strips => self.strips(gpu, method.quality).render(&frame),
-            Form::Tiles => self.tiles(gpu).render(&frame),
-            Form::Layers(format) => self.layers(gpu, format).render(&frame),
+            Form::Tiles => self.tiles(gpu, method.quality).render(&frame),
+            Form::Layers(format) => self.layers(gpu, format, method.quality).render(&frame),
         }?;
         match &frame.repairs {
             None => Ok(report),
@@ -98,6 +100,7 @@ impl Renderer {
         prepared: &'a Prepared,
         epipolar: &'a Epipolar,
         repairs: Option<Repairs>,
+        quality: Quality,
         targets: &mut [&mut Target; 2],
     ) -> Option<PairFrame<'a>> {
         let parameters = &prepared.parameters;
@@ -111,7 +114,9 @@ impl Renderer {
             self.blank(gpu, target, covered);
         }
         let depths_m = epipolar.depths_m(&corners)?;
-        let slabs = epipolar.slabs().between(depths_m.start, depths_m.end);
+        let splat = Splat::of(quality).in_mode(parameters.mode);
+        let planes = splat.slabs(epipolar);
+        let slabs = splat.reached(planes.between(depths_m.start, depths_m.end));
         let columns = epipolar.columns_of(&corners, &slabs.cast_columns(size[0]));
         if columns.is_empty() {
             return None;
@@ -119,7 +124,7 @@ impl Renderer {
         let tiles = repairs.as_ref().map_or(&self.unused[1], |repairs| &repairs.tiles);
         let targets =
             targets.each_ref().map(|target| self.target_group(gpu, target, [&self.unused[0], tiles]));
-        Some(PairFrame { gpu, prepared, epipolar, slabs, columns, covered, targets, repairs })
+        Some(PairFrame { gpu, prepared, epipolar, slabs, planes, columns, covered, targets, repairs })
     }
 }
 
@@ -131,6 +136,11 @@ impl PairFrame<'_> {
     /// Width and height of both pictures, pixels.
     pub(crate) fn size(&self) -> [u32; 2] {
         self.epipolar.reference().size
+    }
+
+    /// The pair in strips of so many columns.
+    pub(crate) fn uniform(&self, width: u32) -> PairUniform {
+        PairUniform::new(self.epipolar, &self.planes, self.slabs, &self.columns, width)
     }
 
     /// Checks that a driver takes the rays each in one dispatch.

@@ -5,7 +5,7 @@
 
 use super::pair::{Eye, PairFrame, PairReport};
 use super::repair::MEASURE_FORMAT;
-use super::{PairError, Quality};
+use super::{PairError, Quality, Splat};
 use crate::buffers::{check_sizes, storage};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
@@ -24,7 +24,7 @@ const COLOR_BYTES: u64 = 16;
 const DEPTH_BYTES: u64 = 4;
 
 /// Bytes of a row of a strip between dispatches: `Progress` of `cast_strips.wgsl`.
-const PROGRESS_BYTES: u64 = 144;
+const PROGRESS_BYTES: u64 = 160;
 
 /// Loop iterations of an invocation after which a GPU's dispatch ends, so that none runs for seconds.
 const GPU_ITERATIONS: u32 = 1 << 18;
@@ -69,7 +69,7 @@ impl StripPass {
     /// Nothing built yet.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts, quality: Quality) -> Self {
         let (cuts, merge, entry_point) = match quality {
-            Quality::Fast => (CUTS_NONE, "stereo/merge_strips", "merge_strips"),
+            Quality::Nearest | Quality::Fast => (CUTS_NONE, "stereo/merge_strips", "merge_strips"),
             Quality::Repaired => (CUTS_KEPT, "stereo/merge_and_measure", "merge_and_measure"),
         };
         let mut types =
@@ -77,11 +77,12 @@ impl StripPass {
         if quality == Quality::Repaired {
             types.extend([storage_buffer(CUT_BYTES), storage_texture(MEASURE_FORMAT)]);
         }
+        let files = [cuts, &[Splat::of(quality).file()]].concat();
         let strip_layout = layout(device, "strips", &types);
         let layout = groups.pipeline_layout(device, "strips", Some(&strip_layout));
         let merge = VariantPipelines::new(layout.clone(), merge, entry_point, cuts);
         let list = VariantPipelines::new(layout.clone(), "stereo/list_columns", "list_columns", &[]);
-        let cast = VariantPipelines::new(layout, "stereo/cast_strips", "cast_strips", cuts);
+        let cast = VariantPipelines::new(layout, "stereo/cast_strips", "cast_strips", &files);
         Self { strip_layout, list, cast, merge, kept: None }
     }
 
@@ -91,7 +92,7 @@ impl StripPass {
             iteration_limit: iteration_limit(frame)?,
             iterations_of_shading: frame.prepared.iterations_of_shading,
             lockstep_rays: LOCKSTEP_RAYS,
-            ..PairUniform::new(frame.epipolar, frame.slabs, &frame.columns, STRIP_COLUMNS)
+            ..frame.uniform(STRIP_COLUMNS)
         };
         let list = self.list.pipeline(frame.gpu, frame.prepared.variant)?;
         let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
@@ -242,7 +243,7 @@ mod tests {
     fn the_passes_build_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        for quality in [Quality::Fast, Quality::Repaired] {
+        for quality in [Quality::Nearest, Quality::Fast, Quality::Repaired] {
             let pass = StripPass::new(&device, &GroupLayouts::new(&device), quality);
             [pass.list, pass.cast, pass.merge]
                 .iter()

@@ -4,14 +4,13 @@
 //! More rays are cast at once than in strips, on devices that have the processors. Nothing is emptied: a tile writes all of
 //! its sums.
 
-use super::PairError;
 use super::pair::{Eye, PairFrame, PairReport};
+use super::{PairError, Quality, Splat};
 use crate::buffers::{check_sizes, storage};
 use crate::cast_pass::VariantPipelines;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::{GroupLayouts, bind, layout, storage_buffer};
 use crate::pacer::BAND_ROWS;
-use crate::uniforms::PairUniform;
 
 /// Columns of a tile: `TILE_COLUMNS` of `stereo/sink_tiles.wgsl`.
 const TILE_COLUMNS: u32 = 32;
@@ -33,22 +32,23 @@ pub(crate) struct PairTilePass {
 
 impl PairTilePass {
     /// Nothing built yet.
-    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts, quality: Quality) -> Self {
+        let files = [FILES, &[Splat::of(quality).file()]].concat();
         let types = [storage_buffer(PARTIAL_BYTES[0]), storage_buffer(PARTIAL_BYTES[1])];
         let tile_layout = layout(device, "pair tiles", &types);
         let layout = groups.pipeline_layout(device, "pair tiles", Some(&tile_layout));
         let merge = VariantPipelines::new(layout.clone(), "stereo/merge_tiles", "merge_tiles", FILES);
-        let cast = VariantPipelines::new(layout, "stereo/cast_tiles", "cast_tiles", FILES);
+        let cast = VariantPipelines::new(layout, "stereo/cast_tiles", "cast_tiles", &files);
         Self { tile_layout, cast, merge, kept: None }
     }
 
     /// Makes a pair.
     pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
         frame.check_whole_rays()?;
-        let PairFrame { gpu, epipolar, slabs, columns, .. } = frame;
+        let PairFrame { gpu, slabs, .. } = frame;
         let pipeline = self.cast.pipeline(gpu, frame.prepared.variant)?;
         let merge = self.merge.pipeline(gpu, frame.prepared.variant)?;
-        let tiles = PairUniform::new(epipolar, *slabs, columns, TILE_COLUMNS);
+        let tiles = frame.uniform(TILE_COLUMNS);
         let rows = frame.size()[1].next_multiple_of(BAND_ROWS);
         let reached = u64::from(rows) * u64::from(tiles.count) * u64::from(TILE_COLUMNS + slabs.layers() - 1);
         let buffers = match self.kept.take() {
@@ -103,8 +103,10 @@ mod tests {
     fn the_pass_builds_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let pass = PairTilePass::new(&device, &GroupLayouts::new(&device));
-        [pass.cast, pass.merge].iter().for_each(|pipelines| pipelines.build_all_of_pairs(&device));
+        for quality in [Quality::Nearest, Quality::Fast] {
+            let pass = PairTilePass::new(&device, &GroupLayouts::new(&device), quality);
+            [pass.cast, pass.merge].iter().for_each(|pipelines| pipelines.build_all_of_pairs(&device));
+        }
         if let Some(error) = pollster::block_on(scope.pop()) {
             panic!("{error}");
         }

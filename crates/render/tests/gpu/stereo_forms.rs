@@ -13,11 +13,19 @@ use wheatstone_core::view::{Projection, Rig, View};
 use wheatstone_core::volume::{Grid, Volume, Voxels};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
 use wheatstone_render::{
-    Form, Gpu, GpuVolume, LayerFormat, Leap, PairError, PairMethod, Prepared, Renderer, Sources, TexelFormat,
+    Form, Gpu, GpuVolume, LayerFormat, Leap, PairError, PairMethod, Quality, Renderer, Sources, TexelFormat,
 };
 
 /// Forms that do not round segments to 8 bits.
 const FORMS: [Form; 3] = [Form::Strips, Form::Tiles, Form::Layers(LayerFormat::Rgba16Float)];
+
+/// Which columns segments go to, by quality.
+const SPLATS: [(Quality, Splat); 2] = [(Quality::Nearest, Splat::Nearest), (Quality::Fast, Splat::Linear)];
+
+/// Every form with every splat.
+fn methods() -> Vec<PairMethod> {
+    FORMS.iter().flat_map(|&form| SPLATS.map(|(quality, _)| PairMethod { form, quality })).collect()
+}
 
 /// Layers of the cases: one, few, those of the papers, some that no strip, square or power of two divides, and more than a
 /// strip is wide.
@@ -92,7 +100,7 @@ impl Case {
     }
 
     /// Both eyes by each form, cast twice.
-    fn pairs(&self, gpu: &Gpu, renderer: &mut Renderer, forms: &[Form]) -> Vec<[[Cast; 2]; 2]> {
+    fn pairs(&self, gpu: &Gpu, renderer: &mut Renderer, methods: &[PairMethod]) -> Vec<[[Cast; 2]; 2]> {
         let uploaded = GpuVolume::upload_as(gpu, &self.volume, FORMAT, &mut |_, _| {}).unwrap();
         let kernels = SkipKernels::new(gpu).unwrap();
         let mut builder = SkipBuilder::new(gpu, &kernels, &uploaded, BlockSize::cube(3).unwrap()).unwrap();
@@ -100,17 +108,14 @@ impl Case {
         let leap = if self.leaps { Leap::EmptyBlocks(&map) } else { Leap::Nothing };
         let sources = Sources { leap, ..Sources::volume(&uploaded) };
         let prepared = renderer.prepare(gpu, &sources, self.parameters.clone()).unwrap();
-        forms.iter().map(|&form| [(); 2].map(|()| self.pair(gpu, renderer, &prepared, form))).collect()
-    }
-
-    fn pair(&self, gpu: &Gpu, renderer: &mut Renderer, prepared: &Prepared, form: Form) -> [Cast; 2] {
-        let method = PairMethod { form, ..PairMethod::default() };
-        render_pair(gpu, renderer, prepared, &self.epipolar, method).unwrap()
+        let pair =
+            |method| [(); 2].map(|()| render_pair(gpu, renderer, &prepared, &self.epipolar, method).unwrap());
+        methods.iter().copied().map(pair).collect()
     }
 
     /// Both eyes in the sequential order.
-    fn truth(&self) -> [Cast; 2] {
-        let reprojection = Reprojection { splat: Splat::Nearest, ray_end: RayEnd::Reference };
+    fn truth(&self, splat: Splat) -> [Cast; 2] {
+        let reprojection = Reprojection { splat, ray_end: RayEnd::Reference };
         Caster::with_storage(&self.volume, storage_kind(FORMAT))
             .cast_pair(&self.parameters, &Aids::default(), &self.epipolar, reprojection)
             .unwrap()
@@ -181,10 +186,10 @@ fn difference(a: &Cast, b: &Cast, limit: f64) -> (f64, f64) {
     (differences.iter().sum::<f64>() / count, others as f64 / count)
 }
 
-/// Share of pixels that are hit in one picture only, or at depths whose columns are apart by more than that of a slab.
-fn share_of_other_hits(a: &Cast, b: &Cast, k: f64) -> f64 {
+/// Share of pixels that are hit in one picture only, or at depths whose columns are further apart than some.
+fn share_of_other_hits(a: &Cast, b: &Cast, k: f64, columns: f64) -> f64 {
     let depths_m = a.image.depth_m.iter().zip(&b.image.depth_m).map(|(&a, &b)| [f64::from(a), f64::from(b)]);
-    let is_other = |[a, b]: &[f64; 2]| a.is_finite() != b.is_finite() || (k / a - k / b).abs() > 1.0;
+    let is_other = |[a, b]: &[f64; 2]| a.is_finite() != b.is_finite() || (k / a - k / b).abs() > columns;
     depths_m.filter(is_other).count() as f64 / a.image.depth_m.len() as f64
 }
 
@@ -198,22 +203,28 @@ fn check(cases: impl Iterator<Item = (u64, u32)>, mode: Mode) {
         let mut failures = Vec::new();
         for (number, layers) in cases {
             let case = Case::new(number, layers, mode);
-            let truth = case.truth();
-            assert!(mean_alpha(&truth[1]) > 0.02, "case {number} is nearly empty");
+            // X-rays are not shared by columns.
+            let truths =
+                SPLATS.map(|(_, splat)| case.truth(if mode == Mode::XRay { Splat::Nearest } else { splat }));
+            assert!(mean_alpha(&truths[0][1]) > 0.02, "case {number} is nearly empty");
             // Truth ends each derived pixel at a sample, layers at a slab, strips and tiles not at all.
             let behind_end = 1.0 - f64::from(case.parameters.termination_alpha);
-            for (form, [pair, again]) in FORMS.iter().zip(case.pairs(gpu, renderer, &FORMS)) {
+            let methods = methods();
+            let made = case.pairs(gpu, renderer, &methods);
+            for (PairMethod { form, quality }, [pair, again]) in methods.iter().zip(made) {
+                let truth = &truths[SPLATS.iter().position(|(of, _)| of == quality).unwrap()];
                 for (eye, [pair, again, truth]) in
                     [0, 1].map(|eye| [&pair[eye], &again[eye], &truth[eye]]).into_iter().enumerate()
                 {
                     let (mean, others) = difference(pair, truth, SAME + behind_end);
-                    let hits = share_of_other_hits(pair, truth, case.epipolar.k());
+                    let columns = if *quality == Quality::Nearest { 1.0 } else { 2.0 };
+                    let hits = share_of_other_hits(pair, truth, case.epipolar.k(), columns);
                     if mean > MEAN_DIFFERENCE + 0.1 * behind_end
                         || others > SHARE_OF_OTHERS
                         || hits > SHARE_OF_OTHER_HITS
                     {
                         failures.push(format!(
-                            "{number} {form:?} of {layers} layers, eye {eye}: mean {mean}, others {others}, hits {hits}"
+                            "{number} {form:?} {quality:?} of {layers} layers, eye {eye}: mean {mean}, others {others}, hits {hits}"
                         ));
                     }
                     assert_eq!(largest_difference(pair, again), 0.0, "{number} {form:?}");
@@ -268,8 +279,9 @@ fn layers_of_8_bits_round_each_segment() {
     on_device(|gpu, renderer| {
         let layers = 12;
         let case = Case::new(5, layers, Mode::Composite);
-        let forms = [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float].map(Form::Layers);
-        let [eight, half] = case.pairs(gpu, renderer, &forms).try_into().unwrap();
+        let methods = [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float]
+            .map(|format| PairMethod { form: Form::Layers(format), ..PairMethod::default() });
+        let [eight, half] = case.pairs(gpu, renderer, &methods).try_into().unwrap();
         assert_eq!(largest_difference(&eight[0][0], &half[0][0]), 0.0);
         let difference = largest_difference(&eight[0][1], &half[0][1]);
         let most = LEVELS_PER_LAYER * f64::from(layers) / 255.0;
@@ -285,6 +297,6 @@ fn more_layers_than_the_device_holds_are_said() {
         let prepared = renderer.prepare(gpu, &Sources::volume(&uploaded), case.parameters.clone()).unwrap();
         let method = PairMethod { form: Form::Layers(LayerFormat::Rgba8Unorm), ..PairMethod::default() };
         let refused = render_pair(gpu, renderer, &prepared, &case.epipolar, method);
-        assert!(matches!(refused, Err(PairError::Layers { layers: 3_000, .. })));
+        assert!(matches!(refused, Err(PairError::Layers { layers: 3_000.., .. })));
     });
 }

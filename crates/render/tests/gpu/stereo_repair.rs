@@ -139,7 +139,7 @@ fn as_much_is_cast_as_it_takes() {
                 [Quality::Fast, Quality::Repaired].map(|quality| scene.pair(&views, quality)[1].clone());
             let [of_fast, of_repaired] = [&fast, &repaired].map(|derived| dssim_covered(derived, own));
             if needs_repair {
-                assert!(of_fast > 0.02 && of_repaired < 0.01, "{of_fast} {of_repaired}");
+                assert!(of_fast > 0.012 && of_repaired < 0.01, "{of_fast} {of_repaired}");
             } else {
                 assert!(of_fast < 0.007, "{of_fast}");
                 assert_eq!(largest_difference(&repaired, &fast), 0.0);
@@ -155,7 +155,11 @@ fn long_rays_are_repaired_in_parts() {
         let views = pair(&middle([61, 45], DVec3::new(0.1, 0.05, -1.1)), -0.15, f64::INFINITY);
         let mut scene = Opaque::new(gpu, renderer, &volume, 75.0);
         let own = &scene.own(&views)[1];
-        let [_, derived] = scene.pair(&views, Quality::Repaired);
-        assert!(dssim_covered(&derived, own) < 0.01, "{}", dssim_covered(&derived, own));
+        let [fast, repaired] =
+            [Quality::Fast, Quality::Repaired].map(|quality| scene.pair(&views, quality)[1].clone());
+        assert!(gaps(&fast, own) > 10, "{}", gaps(&fast, own));
+        assert_eq!(gaps(&repaired, own), 0);
+        let [of_fast, of_repaired] = [&fast, &repaired].map(|derived| dssim_covered(derived, own));
+        assert!(of_repaired < 0.3 * of_fast, "{of_repaired} {of_fast}");
     });
 }

@@ -26,29 +26,55 @@ pub(super) struct CompositeRow<C> {
 /// The samples of a ray in one slab.
 struct Segment {
     slab: i32,
-    /// What the ray itself gathers of them. Columns take its colour whatever their shares: a small share of a surface must not
-    /// show what is behind it.
+    /// What the ray itself gathers of them.
     gathered: Gathered<Exact>,
-    /// What passes in each column that they contribute to.
-    transmittances: [Exact; MOST_COLUMNS],
+    /// Sum of their depths, each by what it adds to the opacity, metres.
+    moment_m: Exact,
 }
 
 impl Segment {
     fn nothing(slab: i32) -> Self {
-        let clear = Exact::splat((), 1.0);
-        Self { slab, gathered: Gathered::nothing(()), transmittances: [clear; MOST_COLUMNS] }
+        Self { slab, gathered: Gathered::nothing(()), moment_m: Exact::from(0.0) }
+    }
+
+    fn alpha(&self) -> Exact {
+        Exact::from(1.0) - self.gathered.transmittance
+    }
+
+    /// Puts a sample behind those before.
+    fn add(&mut self, rgb: Vec3<Exact>, transmittance: Exact, depth_m: Exact) {
+        let alpha = self.alpha();
+        self.gathered.add((), rgb, transmittance);
+        self.moment_m += (self.alpha() - alpha) * depth_m;
+    }
+
+    /// What passes in each column that the samples contribute to. In the second one the segment of the ray before is in front: as
+    /// much passes both as passes each of them alone.
+    fn transmittances(&self, sweep: &Sweep<'_>) -> [Exact; MOST_COLUMNS] {
+        let one = Exact::from(1.0);
+        if self.alpha() <= Exact::from(0.0) {
+            return [one; MOST_COLUMNS];
+        }
+        let [first, second] = sweep.shares(self.slab, self.moment_m / self.alpha()).map(Exact::from);
+        let in_front = self.alpha() * first;
+        let left = (one - in_front).max(Exact::from(LEAST_TRANSMITTANCE));
+        [
+            if first == one { self.gathered.transmittance } else { one - in_front },
+            one - self.alpha() * second / left,
+        ]
     }
 
     /// Premultiplied colour in a column: the ray's, by the column's opacity.
-    fn rgb(&self, i: usize) -> Vec3<Exact> {
-        let one = Exact::splat((), 1.0);
-        let alpha = one - self.gathered.transmittance;
-        if alpha <= Exact::splat((), 0.0) {
+    fn rgb(&self, transmittance: Exact) -> Vec3<Exact> {
+        if self.alpha() <= Exact::from(0.0) {
             return self.gathered.rgb;
         }
-        self.gathered.rgb * ((one - self.transmittances[i]) / alpha)
+        self.gathered.rgb * ((Exact::from(1.0) - transmittance) / self.alpha())
     }
 }
+
+/// Of what passes in front, if something behind is to be seen.
+const LEAST_TRANSMITTANCE: f64 = 1.0 / 16_777_216.0;
 
 impl<C: Classify> DerivedRow for CompositeRow<C> {
     fn empty(context: &Context<'_>, sweep: &Sweep<'_>) -> Self {
@@ -83,7 +109,7 @@ impl<C: Classify> DerivedRow for CompositeRow<C> {
                     self.composite(sweep, column, &segment);
                     segment = Segment::nothing(part.slab);
                 }
-                self.add(sweep, column, &mut segment, &sample, part.shares, depth_m);
+                self.add(sweep, column, &mut segment, &sample, part.share, depth_m);
             }
             match sweep.ray_end() {
                 RayEnd::Volume => false,
@@ -105,49 +131,52 @@ impl<C: Classify> DerivedRow for CompositeRow<C> {
 }
 
 impl<C: Classify> CompositeRow<C> {
-    /// Adds a part of a sample to a segment, for pixels that have not ended, and notes where they are hit.
+    /// Adds a part of a sample to a segment, if any of its pixels has not ended, and notes where they are hit.
     fn add(
         &mut self,
         sweep: &Sweep<'_>,
         column: i32,
         segment: &mut Segment,
         sample: &Sample<Exact>,
-        shares: [f64; MOST_COLUMNS],
+        share: f64,
         depth_m: Exact,
     ) {
-        let part_share = Exact::from(shares.iter().sum::<f64>());
-        let mut is_any_open = false;
-        for (target, i) in sweep.targets(column, segment.slab) {
-            let (pixel, transmittance) = (&mut self.pixels[target], &mut segment.transmittances[i]);
-            if self.least_transmittance < pixel.transmittance * *transmittance {
-                *transmittance *= (sample.log2 * Exact::from(shares[i])).exp2();
-                pixel.note_hit((), pixel.transmittance * *transmittance, depth_m);
-                is_any_open = true;
-            }
+        if !self.is_open_here(sweep, column, segment) {
+            return;
         }
-        if is_any_open {
-            segment.gathered.add((), sample.rgb, (sample.log2 * part_share).exp2());
+        segment.add(sample.rgb, (sample.log2 * Exact::from(share)).exp2(), depth_m);
+        let transmittances = segment.transmittances(sweep);
+        for (target, i) in sweep.targets(column, segment.slab) {
+            let pixel = &mut self.pixels[target];
+            pixel.note_hit((), pixel.transmittance * transmittances[i], depth_m);
         }
     }
 
     /// Composites a segment behind what its pixels have gathered.
     fn composite(&mut self, sweep: &Sweep<'_>, column: i32, segment: &Segment) {
+        let transmittances = segment.transmittances(sweep);
         for (target, i) in sweep.targets(column, segment.slab) {
             let pixel = &mut self.pixels[target];
-            pixel.rgb = segment.rgb(i).mul_add(pixel.transmittance, pixel.rgb);
-            pixel.transmittance *= segment.transmittances[i];
+            if self.least_transmittance < pixel.transmittance {
+                pixel.rgb = segment.rgb(transmittances[i]).mul_add(pixel.transmittance, pixel.rgb);
+                pixel.transmittance *= transmittances[i];
+            }
         }
+    }
+
+    /// Whether any pixel of a segment has not ended.
+    fn is_open_here(&self, sweep: &Sweep<'_>, column: i32, segment: &Segment) -> bool {
+        let transmittances = segment.transmittances(sweep);
+        sweep.targets(column, segment.slab).any(|(target, i)| {
+            self.least_transmittance < self.pixels[target].transmittance * transmittances[i]
+        })
     }
 
     /// Whether a ray meets a pixel that has not ended, from its segment on.
     fn is_any_open(&self, sweep: &Sweep<'_>, column: i32, segment: &Segment, last_slab: i32) -> bool {
-        let is_open = |transmittance: Exact| self.least_transmittance < transmittance;
-        let is_open_here = sweep
-            .targets(column, segment.slab)
-            .any(|(target, i)| is_open(self.pixels[target].transmittance * segment.transmittances[i]));
-        is_open_here
+        self.is_open_here(sweep, column, segment)
             || sweep
                 .targets_between(column, segment.slab - 1, last_slab)
-                .any(|target| is_open(self.pixels[target].transmittance))
+                .any(|target| self.least_transmittance < self.pixels[target].transmittance)
     }
 }

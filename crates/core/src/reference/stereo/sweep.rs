@@ -1,7 +1,7 @@
 //! The order in which reference rays are cast.
 
 use super::derived_row::DerivedRow;
-use super::splat::Part;
+use super::splat::{self, Part};
 use super::{RayEnd, Reprojection};
 use crate::cast::CastParameters;
 use crate::image::Image;
@@ -62,6 +62,11 @@ impl<'a> Sweep<'a> {
     /// The parts of a sample at a depth of a ray, front to back.
     pub(super) fn parts(&self, ray: &Ray<Exact>, depth_m: Exact) -> impl Iterator<Item = Part> + use<> {
         self.reprojection.splat.parts(self.slabs, depth_m.into(), ray.step_depth_m.into())
+    }
+
+    /// What the columns of a slab take of samples that are at a depth in the mean.
+    pub(super) fn shares(&self, slab: i32, depth_m: Exact) -> [f64; splat::MOST_COLUMNS] {
+        self.reprojection.splat.shares(self.slabs, slab, depth_m.into())
     }
 
     /// Derived columns that samples of a reference column in a slab contribute to, with the number of the share.

@@ -33,8 +33,9 @@ impl DerivedRow for XRayRow {
             sum += value;
             let depth_m = ray.depth_m(index);
             for part in sweep.parts(ray, depth_m) {
+                let shares = sweep.shares(part.slab, depth_m);
                 for (target, i) in sweep.targets(column, part.slab) {
-                    self.integrals[target].0 += value * ray.step_length * Exact::from(part.shares[i]);
+                    self.integrals[target].0 += value * ray.step_length * Exact::from(part.share * shares[i]);
                 }
             }
         });
