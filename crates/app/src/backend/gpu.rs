@@ -1,5 +1,9 @@
 //! A volume on a GPU.
 
+mod warping;
+
+pub(crate) use warping::GpuWarping;
+
 use super::{GradientMapSize, Leaping, NoPair, PairCast, Shot, median_ms};
 use crate::pairing::Pairing;
 use crate::progress::Bar;

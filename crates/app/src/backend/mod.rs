@@ -9,7 +9,7 @@ use crate::skipping::Skipping;
 use clap::ValueEnum;
 use cpu::CpuEngine;
 use gpu::GpuEngine;
-pub(crate) use gpu::LiveEngine;
+pub(crate) use gpu::{GpuWarping, LiveEngine};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;

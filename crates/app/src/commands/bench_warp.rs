@@ -1,6 +1,7 @@
 //! `bench warp`: how far what a display shows is from what its eyes should see, by the protocol of VR §6.2.
 
 mod charts;
+mod costs;
 mod live;
 mod motion;
 mod pictures;
@@ -11,7 +12,7 @@ mod trace;
 mod warp;
 
 use super::bench::{Device, Opened, default_transfer, open};
-use crate::backend::Engine;
+use crate::backend::{BackendChoice, Engine, note_fallback};
 use crate::camera::Up;
 use crate::failure::Failure;
 use crate::output::{make_folder, print, print_json};
@@ -20,21 +21,21 @@ use crate::skipping::{SkipArgs, SkipName};
 use crate::spec;
 use crate::transfer_spec::{self, TransferSpec};
 use clap::{Args, ValueEnum};
+use costs::{Costs, Timed};
 use live::Keeping;
 use motion::{Extent, MotionName};
 use serde_json::json;
 use session::Session;
-use source::{Camera, Layered};
+use source::Camera;
 use std::path::PathBuf;
 use timeline::Pace;
 use trace::Trace;
 use warp::WarpName;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::head::{Display, Pose};
-use wheatstone_core::reference::Caster;
 use wheatstone_core::scene::{Placement, Settings, Shading};
 use wheatstone_core::view::{Frustum, Orbit, Projection, world_from_patient};
-use wheatstone_core::volume::StorageKind;
+use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::Gpu;
 
 /// Radius of the sphere around a cube of 1 m.
@@ -115,6 +116,10 @@ pub(crate) struct WarpBenchArgs {
     #[arg(long, value_name = "MS", default_value_t = 2.0, value_parser = spec::within(0.0..=1000.0), allow_negative_numbers = true)]
     warp_ms: f64,
 
+    /// Where to cast and warp: auto takes a GPU, software Vulkan included, if there is one.
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    backend: BackendChoice,
+
     #[command(flatten)]
     skip: SkipArgs,
 
@@ -135,15 +140,24 @@ pub(crate) struct WarpBenchArgs {
     json: bool,
 }
 
+/// What was measured of all volumes.
+#[derive(Default)]
+struct Measured {
+    traces: Vec<Trace>,
+    costs: Vec<Costs>,
+    keepings: Vec<Keeping>,
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &WarpBenchArgs) -> Result<(), Failure> {
     [&args.plot, &args.error_pictures].into_iter().flatten().try_for_each(|folder| make_folder(folder))?;
     let pace = args.pace()?;
     let mut device = None;
-    let (mut traces, mut keepings) = (Vec::new(), Vec::new());
+    let mut measured = Measured::default();
     for volume in &args.volumes {
-        device = Some(args.measure_volume(volume, &pace, &mut traces, &mut keepings)?);
+        device = Some(args.measure_volume(volume, &pace, &mut measured)?);
     }
+    let Measured { traces, costs, keepings } = measured;
     if let Some(folder) = &args.plot {
         charts::draw(folder, &traces)?;
     }
@@ -154,11 +168,13 @@ pub(crate) fn run(args: &WarpBenchArgs) -> Result<(), Failure> {
             "refresh_hz": args.live.is_none().then_some(args.refresh_hz),
             "render_ms": args.live.is_none().then_some(args.render_ms),
             "live": args.live.map(|_| keepings.iter().map(Keeping::to_json).collect::<Vec<_>>()),
+            "costs": costs.iter().flat_map(Costs::to_json).collect::<Vec<_>>(),
             "rows": traces.iter().map(Trace::to_json).collect::<Vec<_>>(),
         }));
     }
     let mut tables: Vec<String> = device.iter().map(Device::to_string).collect();
     tables.push(trace::to_table(&traces));
+    tables.push(costs::to_table(&costs));
     tables.extend(keepings.iter().map(Keeping::to_line));
     print(&tables.join("\n"))
 }
@@ -182,8 +198,7 @@ impl WarpBenchArgs {
         &self,
         described: &str,
         pace: &Pace,
-        traces: &mut Vec<Trace>,
-        keepings: &mut Vec<Keeping>,
+        measured: &mut Measured,
     ) -> Result<Device, Failure> {
         let Opened { volume, name, benchmark } = open(described)?;
         let transfer = self.tf.clone().unwrap_or_else(|| default_transfer(&benchmark));
@@ -192,18 +207,23 @@ impl WarpBenchArgs {
         let settings =
             Settings { shading: self.shading, ..Settings::new(resolved.window, resolved.transfer.clone()) };
         let storage = StorageKind::lossless_for(&volume);
-        let mut engine = Engine::gpu(Gpu::open_best()?, &volume, storage)?;
+        let mut engine = self.engine(&volume, storage)?;
         let parameters = CastParameters::new(&settings, &placement);
-        let shot = engine.prepare(&parameters, &self.skip.resolve(SkipName::Auto)?)?;
+        let skipping = self.skip.resolve(SkipName::Auto)?;
+        let shot = engine.prepare(&parameters, &skipping)?;
+        let mut shaded = |shading| {
+            let settings = Settings { shading, ..settings.clone() };
+            engine.prepare(&CastParameters::new(&settings, &placement), &skipping)
+        };
+        let shots = [shaded(Shading::None)?, shaded(Shading::Shadow)?];
         let frustum = Frustum::from_fov_y(self.fov_deg.to_radians(), self.size).map_err(Failure::input)?;
         let orbit = Orbit { distance_m: self.distance + RADIUS_M, ..Orbit::default() };
         let middle = orbit.view(Projection::Perspective(frustum), self.size);
         let extent = Extent { turn_rad: self.turn_deg.to_radians(), sideways_m: self.sideways };
         let warps = if self.warps.is_empty() { WarpName::value_variants() } else { &self.warps };
-        let layered = warps
-            .contains(&WarpName::Volumetric)
-            .then(|| Layered { caster: Caster::with_storage(&volume, storage), parameters: &parameters });
-        let mut camera = Camera { engine: &mut engine, shot, layered };
+        let mut camera = Camera::new(&mut engine, shot, (&volume, storage, &parameters), middle, warps)?;
+        let timed = Timed { volume: &name, shots, middle: &middle, extent, warps };
+        measured.costs.push(costs::measure(&timed, &mut camera)?);
         for &motion in &self.motions {
             let path = motion.about(Pose::of(&middle), extent)?;
             let mut display = pace.display;
@@ -214,7 +234,7 @@ impl WarpBenchArgs {
                     let pace = live::fitting_pace(&mut engine, &path, &middle, refreshes, pace.reserve_s)?;
                     let case = format!("{name}, {}", motion.name());
                     let (refreshes, keeping) = live::refreshes(&mut engine, &path, &middle, &pace, case)?;
-                    keepings.push(keeping);
+                    measured.keepings.push(keeping);
                     display = pace.display;
                     refreshes
                 }
@@ -233,9 +253,21 @@ impl WarpBenchArgs {
                 if let Some(folder) = &self.error_pictures {
                     pictures::write(folder, &trace)?;
                 }
-                traces.push(trace);
+                measured.traces.push(trace);
             }
         }
         Ok(Device::of(&engine))
+    }
+
+    fn engine<'v>(&self, volume: &'v Volume, storage: StorageKind) -> Result<Engine<'v>, Failure> {
+        let on_gpu = || Engine::gpu(Gpu::open_best()?, volume, storage);
+        match self.backend {
+            BackendChoice::Cpu => Ok(Engine::cpu(volume, storage)),
+            BackendChoice::Gpu => Ok(on_gpu()?),
+            BackendChoice::Auto => Ok(on_gpu().unwrap_or_else(|error| {
+                note_fallback(&error);
+                Engine::cpu(volume, storage)
+            })),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! One motion: every refresh by every warp against a true render.
 
 use super::motion::MotionName;
-use super::source::{Camera, Source};
+use super::source::Camera;
 use super::timeline::Refresh;
 use super::trace::{Trace, Worst};
 use super::warp::WarpName;
@@ -9,7 +9,6 @@ use crate::backend::milliseconds;
 use crate::failure::Failure;
 use crate::progress::Bar;
 use anyhow::Context as _;
-use std::time::Instant;
 use wheatstone_core::head::Display;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::metrics::{SsimMap, dssim};
@@ -42,31 +41,32 @@ pub(super) fn run(
         warp,
         dssim: Vec::new(),
         warp_ms: Vec::new(),
+        cast_ms: Vec::new(),
         missed,
         worst: None,
     };
     let mut traces: Vec<Trace> = session.warps.iter().map(new_trace).collect();
     let mut displayed: Vec<Option<RgbImage>> = session.warps.iter().map(|_| None).collect();
-    let mut source: Option<Source> = None;
+    let mut picture = None;
     for (number, refresh) in session.refreshes.iter().enumerate() {
-        let kept = source.take().filter(|source| source.picture == refresh.picture);
-        let source = source.insert(match kept {
-            Some(kept) => kept,
-            None => camera.source(refresh.picture, refresh.cast_from.view(session.like))?,
-        });
+        if picture != Some(refresh.picture) {
+            camera.begin(refresh.cast_from.view(session.like))?;
+            picture = Some(refresh.picture);
+        }
         let wanted = refresh.eyes.view(session.like);
-        let truth = camera.cast(wanted)?.over_background([0.0; 3]);
+        let (truth, cast) = camera.cast(wanted)?;
+        let truth = truth.over_background([0.0; 3]);
         for (trace, displayed) in traces.iter_mut().zip(&mut displayed) {
             let kept = displayed.take().filter(|_| refresh.is_missed);
             let picture = match kept {
                 Some(kept) => kept,
                 None => {
-                    let start = Instant::now();
-                    let warped = trace.warp.warp(source, &wanted)?;
-                    trace.warp_ms.push(milliseconds(start.elapsed()));
-                    warped.over_background([0.0; 3])
+                    let warp = camera.warp(trace.warp, &wanted)?;
+                    trace.warp_ms.push(milliseconds(warp));
+                    camera.warped(trace.warp)?.over_background([0.0; 3])
                 }
             };
+            trace.cast_ms.push(milliseconds(cast));
             trace.compare(number, &picture, &truth, session.keeps_worst)?;
             *displayed = Some(picture);
         }

@@ -17,6 +17,8 @@ pub(super) struct Trace {
     /// Of what is displayed at each refresh from a true render.
     pub(super) dssim: Vec<f64>,
     pub(super) warp_ms: Vec<f64>,
+    /// Of true renders.
+    pub(super) cast_ms: Vec<f64>,
     pub(super) missed: usize,
     pub(super) worst: Option<Worst>,
 }
@@ -52,6 +54,7 @@ impl Trace {
             "dssim_worst": self.worst(),
             "drop_worst": self.largest_drop(),
             "warp_ms": median(&self.warp_ms),
+            "cast_ms": median(&self.cast_ms),
             "missed": self.missed,
             "trace": self.dssim,
         })
@@ -60,12 +63,12 @@ impl Trace {
 
 pub(super) fn to_table(traces: &[Trace]) -> String {
     let mut lines = vec![format!(
-        "{:<14} {:<12} {:<10} {:>8} {:>8} {:>8} {:>8} {:>6}",
-        "volume", "motion", "warp", "DSSIM", "worst", "drop", "warp ms", "missed"
+        "{:<14} {:<12} {:<10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}",
+        "volume", "motion", "warp", "DSSIM", "worst", "drop", "warp ms", "cast ms", "missed"
     )];
     for trace in traces {
         lines.push(format!(
-            "{:<14} {:<12} {:<10} {:>8.5} {:>8.5} {:>8.5} {:>8.2} {:>6}",
+            "{:<14} {:<12} {:<10} {:>8.5} {:>8.5} {:>8.5} {:>8.2} {:>8.2} {:>6}",
             trace.volume,
             trace.motion.name(),
             trace.warp.name(),
@@ -73,6 +76,7 @@ pub(super) fn to_table(traces: &[Trace]) -> String {
             trace.worst(),
             trace.largest_drop(),
             median(&trace.warp_ms),
+            median(&trace.cast_ms),
             trace.missed,
         ));
     }
