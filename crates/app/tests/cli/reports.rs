@@ -296,10 +296,22 @@ fn bench_warp_traces_every_warp() {
     let run = bench.run(&[&small[..], &folders].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);
     let json = run.json();
-    assert_eq!(keys(&json), ["device", "live", "refresh_hz", "render_ms", "rows", "size"]);
+    assert_eq!(keys(&json), ["costs", "device", "live", "refresh_hz", "render_ms", "rows", "size"]);
     let rows = json["rows"].as_array().unwrap();
-    let row_keys =
-        ["drop_worst", "dssim_mean", "dssim_worst", "missed", "motion", "trace", "volume", "warp", "warp_ms"];
+    let row_keys = [
+        "cast_ms",
+        "drop_worst",
+        "dssim_mean",
+        "dssim_worst",
+        "missed",
+        "motion",
+        "trace",
+        "volume",
+        "warp",
+        "warp_ms",
+    ];
+    let costs = json["costs"].as_array().unwrap();
+    assert!(costs.len() == 8 && costs.iter().all(|cost| cost["of_cast"].as_f64().unwrap() >= 0.0));
     assert!(rows.iter().all(|row| keys(row) == row_keys && row["trace"].as_array().unwrap().len() > 90));
     let mean = |motion: &str, warp: &str| {
         let row = rows.iter().find(|row| row["motion"] == motion && row["warp"] == warp).unwrap();
@@ -310,6 +322,11 @@ fn bench_warp_traces_every_warp() {
     assert!(mean("translation", "volumetric") < 0.5 * mean("translation", "none"));
     let again = bench.run(&[&small[..], &folders].concat()).json();
     assert_eq!(again["rows"][3]["trace"], rows[3]["trace"]);
+    let on_cpu = bench.run(&[&small[..], &["--motions", "rotation", "--backend", "cpu"]].concat()).json();
+    for (row, on_cpu) in rows.iter().zip(on_cpu["rows"].as_array().unwrap()) {
+        let [mean, mean_on_cpu] = [row, on_cpu].map(|row| row["dssim_mean"].as_f64().unwrap());
+        assert!((mean - mean_on_cpu).abs() < 1e-3, "{}: {mean} {mean_on_cpu}", row["warp"]);
+    }
     assert_eq!(std::fs::read_dir(bench.path("plots")).unwrap().count(), 2);
     assert_eq!(std::fs::read_dir(bench.path("errors")).unwrap().count(), 24);
 }

@@ -4,7 +4,7 @@ use super::column::{Column, Columns, Stratum};
 use super::depth_tiles::DepthTiles;
 use super::medium::opacity;
 use super::{EmissionAbsorption, PixelMap, WarpError};
-use crate::cast::{FIRST_HIT_ALPHA, SATURATED_ALPHA};
+use crate::cast::FIRST_HIT_ALPHA;
 use crate::image::Image;
 use crate::view::{RayField, View};
 use glam::{DAffine3, DVec2, DVec3, DVec4};
@@ -16,6 +16,9 @@ const MOST_STEPS: u32 = 4096;
 
 /// Times that the depths which a ray may find something at are narrowed to those of the tiles that it passes.
 const NARROWINGS: usize = 2;
+
+/// A ray ends when no more than this passes it: casts end so by default.
+const LEAST_TRANSMITTANCE: f64 = 0.01;
 
 /// How novel rays are stepped along.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -193,7 +196,7 @@ impl Source<'_> {
             let next = self.columns.at(there.pixel);
             let segment = Segment { ends: [here, there], columns: [&column, &next], step_px };
             segment.add_to(&mut light, ray.metres_per_depth, &self.columns);
-            if light.transmittance <= 1.0 - f64::from(SATURATED_ALPHA) {
+            if light.transmittance <= LEAST_TRANSMITTANCE {
                 break;
             }
             (here, column) = (there, next);

@@ -1,4 +1,4 @@
-import package::lib::column::{Column, SATURATED_ALPHA, TINY, agree, column_at, reversed};
+import package::lib::column::{Column, TINY, agree, column_at, reversed};
 import package::lib::cover_picture::{cover_picture};
 import package::lib::depth_range::{NOTHING, joined};
 import package::lib::layered_warp::{range, tiles, warp};
@@ -7,6 +7,9 @@ import package::lib::layered_warp::{range, tiles, warp};
 
 // Times that the depths which a ray may find something at are narrowed to those of the tiles that it passes.
 const NARROWINGS: u32 = 2u;
+
+// A ray ends when no more than this passes it.
+const LEAST_TRANSMITTANCE: f32 = 0.01;
 
 // Side of a tile, pixels.
 const TILE_SIDE: f32 = 16.0;
@@ -54,7 +57,7 @@ fn light_along(ray: NovelRay) -> Light {
     var here = first;
     var column = column_along(here, goes_forward);
     var step = 0.0;
-    while step < steps && light.transmittance > 1.0 - SATURATED_ALPHA {
+    while step < steps && light.transmittance > LEAST_TRANSMITTANCE {
         step += 1.0;
         let there = place_at(ray, between(first, last, step / steps));
         let next = column_along(there, goes_forward);
