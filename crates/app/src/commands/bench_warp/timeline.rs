@@ -58,8 +58,10 @@ pub(super) fn refreshes(motion: &HeadMotion, pace: &Pace, size: [u32; 2]) -> Res
     let mut schedule = CastSchedule::new(request(motion.eyes_at(0.0))?, Predictor::Corrected);
     let mut shown = Vec::new();
     let mut picture = 0;
-    // Two pictures of rest: the first is shown when the motion begins.
-    let warm_up = -2.0 * refreshes_of_cast - 2.0;
+    // Two pictures of rest, the first of which begins with a cell and doubles from refresh to refresh: one is shown when the motion
+    // begins.
+    let ramp = f64::from(grid.cells().ilog2());
+    let warm_up = -2.0 * refreshes_of_cast - ramp - 2.0;
     let mut refresh = warm_up;
     while (refresh - 1.0) * period_s <= motion.duration_s() {
         let begins_s = refresh * period_s;
