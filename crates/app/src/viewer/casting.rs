@@ -73,16 +73,17 @@ impl Casting {
         let Arrived { facts, volume, mut skipping } = arrived;
         let settings = Settings::of(state);
         let prepared = prepare(gpu, &mut self.renderer, &facts.grid, &volume, skipping.as_mut(), state)?;
-        let aimed = views(state, size)?;
-        let (live, pictures) = match self.scene.take() {
-            Some(Scene { mut live, pictures, .. }) => {
+        let (live, aimed, pictures) = match self.scene.take() {
+            Some(Scene { mut live, aimed, pictures, .. }) => {
                 live.replace(prepared);
-                (live, pictures)
+                (live, aimed, pictures)
             }
             None => {
                 let control = QualityControl::new(REFRESHES_IN_MOTION, REST_AFTER_S);
                 let control = control.map_err(|error| live_failure(error.into()))?;
-                (LiveView::new(gpu, prepared, &aimed, Some(control)).map_err(live_failure)?, 0)
+                let aimed = views(state, size)?;
+                let live = LiveView::new(gpu, prepared, &aimed, Some(control)).map_err(live_failure)?;
+                (live, aimed, 0)
             }
         };
         let is_resting = false;
@@ -98,7 +99,11 @@ impl Casting {
         if settings != scene.settings {
             let Scene { grid, volume, skipping, .. } = &mut *scene;
             let prepared = prepare(gpu, &mut self.renderer, grid, volume, skipping.as_mut(), state)?;
-            scene.live.supersede(prepared);
+            if settings.look.cost() == scene.settings.look.cost() {
+                scene.live.supersede(prepared);
+            } else {
+                scene.live.replace(prepared);
+            }
             scene.settings = settings;
             scene.is_resting = false;
         }

@@ -166,7 +166,10 @@ impl Viewer {
         let now = Instant::now();
         let player = self.player.as_ref().and_then(|player| player.next_at(self.status()));
         let is_busy = self.casting.pictures() != self.drawn_pictures
-            || (self.session.is_capturing() && self.casting.is_resting());
+            || (self.session.is_capturing()
+                && self.session.progress().is_none()
+                && self.casting.front().is_some()
+                && self.casting.is_resting());
         [self.repaint_at, player, is_busy.then_some(now)].into_iter().flatten().min()
     }
 

@@ -5,6 +5,7 @@ use super::canvas::Canvas;
 use super::cycle::Viewer;
 use super::job::Waker;
 use super::report::Report;
+use super::script::Player;
 use super::session::Session;
 use crate::failure::Failure;
 use egui::{Context, Pos2, RawInput, Rect, Vec2};
@@ -20,6 +21,7 @@ const NAP: Duration = Duration::from_millis(5);
 /// Plays the script to its end.
 pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
     let Opening { source, player, size, begun } = opening;
+    let player = player.map(Player::then_quit);
     let has_news = Arc::new(AtomicBool::new(false));
     let news = Arc::clone(&has_news);
     let wake: Waker = Arc::new(move || news.store(true, Ordering::Release));

@@ -43,6 +43,7 @@ struct Pending {
 impl Session {
     /// Begins with a volume or a saved view on its way.
     pub(crate) fn begin(source: Source, wake: Waker) -> Result<Self, Failure> {
+        let source = Source { file: source.file.as_deref().map(absolute), ..source };
         let mut session = Self {
             state: State::default(),
             facts: None,
@@ -139,9 +140,13 @@ impl Session {
             Command::OpenShipped => self.load(Source { file: None, layout: None }, None),
             Command::Reload => self.load(self.source.clone(), Some(self.state.clone())),
             Command::Save(path) => self.save(path),
-            Command::Picture(path) => self.capture(Subject::Picture, path),
+            Command::Picture(path) => {
+                self.expect_volume()?;
+                self.capture(Subject::Picture, path)
+            }
             Command::Screenshot(path) => self.capture(Subject::Window, path),
             Command::Turntable { pictures, path } => {
+                self.expect_volume()?;
                 check_writable(path, "png")?;
                 self.turntable = Some(Turntable::new(*pictures, path.clone()).map_err(Failure::input)?);
                 Ok(())
@@ -154,6 +159,15 @@ impl Session {
         }
     }
 
+    /// Refuses what needs a volume if there is none and none is on its way.
+    fn expect_volume(&self) -> Result<(), Failure> {
+        if self.facts.is_some() || self.pending.is_some() {
+            Ok(())
+        } else {
+            Err(Failure::input("no volume is shown"))
+        }
+    }
+
     fn capture(&mut self, subject: Subject, path: &Path) -> Result<(), Failure> {
         check_writable(path, "png")?;
         self.captures.push(Capture { subject, path: path.to_owned() });
@@ -161,7 +175,7 @@ impl Session {
     }
 
     fn open(&mut self, path: &Path) -> Result<(), Failure> {
-        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let path = absolute(path);
         if !is_view(&path) {
             return self.load(Source { file: Some(path), layout: None }, None);
         }
@@ -198,6 +212,10 @@ impl Session {
 
     fn give_up(&mut self, failure: &Failure) -> Option<Box<Arrived>> {
         self.notes.failed(failure.to_string());
+        if self.facts.is_none() {
+            self.captures.clear();
+            self.turntable = None;
+        }
         None
     }
 
@@ -214,6 +232,10 @@ impl Session {
         let transfer = facts.transfer(&transfer_spec::parse(name).map_err(Failure::input)?)?;
         self.state.apply(&Edit::Transfer(transfer)).map_err(Failure::input)
     }
+}
+
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 /// Whether a path names a saved view.
@@ -236,5 +258,34 @@ fn suiting(source: &Source) -> TransferSpec {
     match source.file {
         None => TransferSpec::Preset(Preset::MriBrainT1),
         Some(_) => TransferSpec::Automatic,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_session_begins_with_an_absolute_path() {
+        let source = Source { file: Some("missing.nrrd".into()), layout: None };
+        let session = Session::begin(source, Arc::new(|| ())).unwrap();
+        assert!(session.pending.unwrap().source.file.unwrap().is_absolute());
+    }
+
+    #[test]
+    fn pictures_of_nothing_are_refused_and_dropped() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = Command::Picture(folder.path().join("a.png"));
+        let source = Source { file: Some("missing.nrrd".into()), layout: None };
+        let mut session = Session::begin(source, Arc::new(|| ())).unwrap();
+        session.perform(&picture);
+        assert!(session.is_capturing());
+        session.pending = None;
+        assert!(session.give_up(&Failure::input("missing")).is_none());
+        assert!(!session.is_capturing());
+        session.perform(&picture);
+        session.perform(&Command::Turntable { pictures: 2, path: folder.path().join("t.png") });
+        assert!(!session.is_capturing());
+        assert!(session.notes.failures().last().unwrap().contains("no volume"));
     }
 }

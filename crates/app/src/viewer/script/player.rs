@@ -52,6 +52,12 @@ impl Player {
         Self { steps, next, at: Instant::now(), events: VecDeque::new(), has_acted: false }
     }
 
+    /// Ends the program when everything is played and at rest.
+    pub(crate) fn then_quit(self) -> Self {
+        let end = [Step::WaitFor(Goal::Rest), Step::Do(Command::Quit)];
+        Self::new(self.next.into_iter().chain(self.steps).chain(end))
+    }
+
     /// What has become due.
     ///
     /// # Errors
@@ -179,6 +185,15 @@ mod tests {
         let late = player.due(begun + Duration::from_millis(250), READY).unwrap();
         assert_eq!(late[0].at, begun + Duration::from_millis(100));
         assert_eq!(player.next_at(READY), None);
+    }
+
+    #[test]
+    fn a_script_that_is_to_quit_ends_at_rest() {
+        let mut player = Player::new([Step::Do(Command::Reload)].into_iter()).then_quit();
+        let now = player.at;
+        assert_eq!(player.due(now, READY).unwrap()[0].happening, Happening::Command(Command::Reload));
+        assert!(player.due(now, Status { is_at_rest: false, ..READY }).unwrap().is_empty());
+        assert_eq!(player.due(now, READY).unwrap()[0].happening, Happening::Command(Command::Quit));
     }
 
     #[test]

@@ -40,6 +40,11 @@ impl Default for Look {
 }
 
 impl Look {
+    /// What decides how long a cast takes: mode, shading, samples per voxel length.
+    pub(crate) fn cost(&self) -> (ModeName, Shading, f64) {
+        (self.mode, self.shading, self.sampling_factor)
+    }
+
     pub(super) fn check(&self) -> Result<(), String> {
         within("isovalue", self.isovalue, 0.0, 1.0)?;
         within("sampling_factor", self.sampling_factor, 0.1, 8.0)?;
