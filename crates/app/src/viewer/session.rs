@@ -180,11 +180,12 @@ impl Session {
             return self.load(Source { file: Some(path), layout: None }, None);
         }
         let view = read_view(&path)?;
-        if self.facts.is_some() && self.pending.is_none() && view.file == self.source.file {
+        let source = Source { file: view.file.clone(), layout: view.layout.clone() };
+        if self.facts.is_some() && self.pending.is_none() && source == self.source {
             self.state = view;
             return Ok(());
         }
-        self.load(Source { file: view.file.clone(), layout: None }, Some(view))
+        self.load(source, Some(view))
     }
 
     fn load(&mut self, source: Source, view: Option<State>) -> Result<(), Failure> {
@@ -200,7 +201,8 @@ impl Session {
                 let transfer = facts.transfer(&suiting(&source))?;
                 let clip = Clip { has_handles: self.state.clip.has_handles, ..Clip::default() };
                 let mut state = self.state.clone();
-                (state.file, state.transfer, state.clip) = (source.file.clone(), transfer, clip);
+                (state.file, state.layout) = (source.file.clone(), source.layout.clone());
+                (state.transfer, state.clip) = (transfer, clip);
                 state
             }
         };

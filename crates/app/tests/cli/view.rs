@@ -129,3 +129,27 @@ fn scripts_and_files_that_are_no_good_are_refused() {
     assert_eq!(run.code, 2, "{}", run.stderr);
     assert!(run.stderr.contains("bad.json"), "{}", run.stderr);
 }
+
+#[test]
+fn a_view_of_a_raw_file_opened_by_flags_is_opened_again() {
+    if !needs_adapter() {
+        return;
+    }
+    let bench = Bench::new();
+    let voxels: Vec<u8> = (0..16 * 16 * 16).map(|index| (index % 16 * 16) as u8).collect();
+    std::fs::write(bench.path("ramp.bin"), voxels).unwrap();
+    let view = |file: &str, script: &str, flags: &[&str]| {
+        std::fs::write(bench.path("script.jsonl"), script).unwrap();
+        let args = ["view", file, "--headless", "--size", "320x200", "--script", "script.jsonl"];
+        let run = bench.run(&[&args, flags].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+    };
+    let saving = "{\"wait_for\": \"rest\"}\n{\"do\": {\"orbit\": {\"right_deg\": 40, \"up_deg\": 20}}}\n\
+                  {\"do\": {\"save\": \"view.json\"}}";
+    view("ramp.bin", saving, &["--raw-size", "16x16x16", "--raw-type", "uint8"]);
+    let shooting = "{\"wait_for\": \"rest\"}\n{\"press\": \"H\"}\n{\"wait_for\": \"rest\"}\n";
+    view("view.json", &format!("{shooting}{{\"do\": {{\"picture\": \"a.png\"}}}}"), &[]);
+    let opening = "{\"do\": {\"open\": \"view.json\"}}\n{\"wait_for\": \"rest\"}\n";
+    view("sphere.nrrd", &format!("{shooting}{opening}{{\"do\": {{\"picture\": \"b.png\"}}}}"), &[]);
+    assert_eq!(picture(&bench, "a.png"), picture(&bench, "b.png"), "the camera is that of the view");
+}

@@ -5,6 +5,7 @@ mod clip;
 mod edit;
 mod look;
 mod pace;
+mod raw;
 mod stereo;
 mod transfer;
 
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use thiserror::Error;
 use wheatstone_core::scene::{GradientMethod, Settings};
+use wheatstone_io::RawLayout;
 
 /// The version of the form that is read and written.
 const VERSION: u64 = 1;
@@ -32,6 +34,9 @@ pub(crate) struct State {
     wheatstone_view: u64,
     /// The volume file; none is the volume that ships with the program.
     pub(crate) file: Option<PathBuf>,
+    /// The layout of a raw file that was opened by its flags.
+    #[serde(default, with = "raw", skip_serializing_if = "Option::is_none")]
+    pub(crate) layout: Option<RawLayout>,
     pub(crate) camera: Camera,
     pub(crate) look: Look,
     pub(crate) transfer: Transfer,
@@ -67,6 +72,7 @@ impl Default for State {
         Self {
             wheatstone_view: VERSION,
             file: None,
+            layout: None,
             camera: Camera::default(),
             look: Look::default(),
             transfer: Transfer::default(),
@@ -149,9 +155,11 @@ mod tests {
     use super::*;
     use crate::look::ModeName;
     use wheatstone_core::scene::Shading;
+    use wheatstone_core::volume::VoxelType;
 
     fn edited() -> State {
-        let mut state = State { file: Some("a b/c.nii.gz".into()), ..State::default() };
+        let layout = Some(RawLayout::new([3, 4, 5], VoxelType::ALL[1]));
+        let mut state = State { file: Some("a b/c.nii.gz".into()), layout, ..State::default() };
         for edit in [
             Edit::Orbit { right_deg: 30.0, up_deg: -12.5 },
             Edit::Mode(ModeName::Iso),
