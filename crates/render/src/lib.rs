@@ -13,6 +13,8 @@ mod layers;
 mod layers_error;
 mod leap;
 pub mod live;
+#[cfg(test)]
+mod noop_device;
 mod pacer;
 mod piece;
 mod pipeline;

@@ -2,6 +2,7 @@
 
 use crate::gpu::{Gpu, GpuError};
 use crate::pacer::BAND_ROWS;
+use crate::readback::read_texture;
 use crate::squares::Squares;
 use wheatstone_core::image::Image;
 use wheatstone_core::reference::{Cast, Reads};
@@ -137,18 +138,13 @@ impl Target {
         self.size
     }
 
-    /// Premultiplied RGBA of 32-bit floats, to be shown.
-    pub fn color(&self) -> &wgpu::Texture {
-        &self.color
-    }
-
     /// Reads the picture back.
     ///
     /// # Errors
     /// No memory, a lost or hung device.
     pub fn read(&self, gpu: &Gpu) -> Result<Cast, GpuError> {
-        let color: Vec<[f32; 4]> = self.read_texture(gpu, &self.color)?;
-        let depth_and_counts: Vec<[f32; 4]> = self.read_texture(gpu, &self.depth)?;
+        let color: Vec<[f32; 4]> = read_texture(gpu, &self.color)?;
+        let depth_and_counts: Vec<[f32; 4]> = read_texture(gpu, &self.depth)?;
         let depth_m = depth_and_counts
             .iter()
             .map(|&[depth_m, .., is_hit]| if is_hit == 0.0 { f32::INFINITY } else { depth_m })
@@ -159,42 +155,6 @@ impl Target {
             .collect();
         let [width, height] = self.size;
         Ok(Cast::new(Image { width, height, color, depth_m }, reads))
-    }
-
-    fn read_texture<T: bytemuck::Pod>(&self, gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<T>, GpuError> {
-        let [width, height] = self.size;
-        let row_bytes = width as usize * size_of::<T>();
-        let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("readback"),
-            size: (padded_row_bytes * height as usize) as u64,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(padded_row_bytes as u32),
-                    rows_per_image: None,
-                },
-            },
-            texture.size(),
-        );
-        gpu.queue.submit([encoder.finish()]);
-        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-        gpu.wait()?;
-        let refused = |error: &dyn std::fmt::Display| GpuError::Refused { reason: error.to_string() };
-        let mapped = buffer.slice(..).get_mapped_range().map_err(|error| refused(&error))?;
-        let pixels = mapped
-            .chunks(padded_row_bytes)
-            .flat_map(|row| bytemuck::cast_slice::<u8, T>(&row[..row_bytes]))
-            .copied()
-            .collect();
-        Ok(pixels)
     }
 }
 

@@ -117,17 +117,15 @@ impl TileList {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noop_device::build_on_noop_device;
     use crate::pacer::BAND_ROWS;
     use crate::shader::compose;
 
     #[test]
     fn the_pipeline_builds_on_the_noop_device() {
-        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        TilePass::new(&device, &GroupLayouts::new(&device)).unwrap();
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            panic!("{error}");
-        }
+        build_on_noop_device(|device| {
+            TilePass::new(device, &GroupLayouts::new(device)).unwrap();
+        });
     }
 
     #[test]

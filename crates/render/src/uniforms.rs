@@ -13,7 +13,7 @@ use wheatstone_core::stereo::{Epipolar, SlabRange, Slabs};
 use wheatstone_core::view::{RayField, View};
 
 /// A WGSL `mat3x3f`: columns padded to 16 bytes.
-type Columns = [[f32; 4]; 3];
+pub(crate) type Columns = [[f32; 4]; 3];
 
 /// Mirror of `lib/cast_parameters.wgsl`, where the fields are described.
 #[repr(C)]
@@ -223,16 +223,16 @@ impl ViewUniform {
     }
 }
 
-fn vector(v: DVec3) -> [f32; 3] {
+pub(crate) fn vector(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }
 
 /// WGSL has no infinity.
-fn finite(depth_m: f64) -> f32 {
+pub(crate) fn finite(depth_m: f64) -> f32 {
     depth_m.clamp(-1e30, 1e30) as f32
 }
 
-fn columns(m: Mat3) -> Columns {
+pub(crate) fn columns(m: Mat3) -> Columns {
     let padded = |column: Vec3| column.extend(0.0).to_array();
     [padded(m.x_axis), padded(m.y_axis), padded(m.z_axis)]
 }

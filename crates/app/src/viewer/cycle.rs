@@ -3,6 +3,7 @@
 use super::canvas::{Canvas, Sheet, texture, write_texture};
 use super::capture::{Capture, Subject};
 use super::casting::{Casting, seen};
+use super::command::Command;
 use super::eyes::{Eyes, Wanted};
 use super::report::Report;
 use super::screen::{Panels, Pictures, Screen};
@@ -193,7 +194,7 @@ impl Viewer {
         let Some(player) = &mut self.player else { return (Vec::new(), None) };
         let due = player.due(now, status).unwrap_or_else(|reason| {
             self.session.notes.failed(reason);
-            self.session.perform(&super::command::Command::Quit);
+            self.session.perform(&Command::Quit);
             Vec::new()
         });
         let mut resize = None;
@@ -201,9 +202,7 @@ impl Viewer {
             match happening {
                 Happening::Command(command) => self.session.perform(command),
                 Happening::Event(event) => input.events.push(event.clone()),
-                Happening::Drop(path) => {
-                    self.session.perform(&super::command::Command::Open(path.clone()));
-                }
+                Happening::Drop(path) => self.session.perform(&Command::Open(path.clone())),
                 Happening::Resize(size) => resize = Some(size.map(clamped_side)),
             }
         }

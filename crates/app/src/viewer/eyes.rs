@@ -79,8 +79,7 @@ fn eye_m(view: &View) -> DVec3 {
 
 /// How far what is nearest moves at most when the eye does, pixels.
 fn columns_moved(shown: &View, moved_m: f64, corners: &[DVec3]) -> f64 {
-    let depth_m = |&corner: &DVec3| -shown.view_from_world.transform_point3(corner).z;
-    let nearest_m = corners.iter().map(depth_m).fold(f64::INFINITY, f64::min).max(NEAREST_M);
+    let nearest_m = shown.depths_m(corners).0.max(NEAREST_M);
     match shown.projection {
         Projection::Perspective(lens) => {
             f64::from(shown.size[0]) / (lens.right - lens.left) * moved_m / nearest_m

@@ -23,6 +23,7 @@ mod script;
 mod session;
 mod show;
 mod state;
+mod text_file;
 mod timings;
 mod ui;
 mod window;

@@ -7,6 +7,7 @@ use super::job::{Progress, Waker};
 use super::loading::{Arrived, Loading, Source, Step};
 use super::notes::Notes;
 use super::state::{Clip, Edit, State};
+use super::text_file::read_text_file;
 use crate::failure::Failure;
 use crate::output::check_writable;
 use crate::transfer_spec::{self, TransferSpec};
@@ -179,7 +180,7 @@ impl Session {
         if !is_view(&path) {
             return self.load(Source { file: Some(path), layout: None }, None);
         }
-        let view = read_view(&path)?;
+        let view = read_text_file(&path, MOST_VIEW_BYTES, "a saved view", State::from_json)?;
         let source = Source { file: view.file.clone(), layout: view.layout.clone() };
         if self.facts.is_some() && self.pending.is_none() && source == self.source {
             self.state = view;
@@ -243,16 +244,6 @@ fn absolute(path: &Path) -> PathBuf {
 /// Whether a path names a saved view.
 fn is_view(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
-}
-
-fn read_view(path: &PathBuf) -> Result<State, Failure> {
-    let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-    let metadata = std::fs::metadata(path).map_err(|error| bad(&error))?;
-    if !metadata.is_file() || metadata.len() > MOST_VIEW_BYTES {
-        return Err(bad(&"not a saved view"));
-    }
-    let text = std::fs::read_to_string(path).map_err(|error| bad(&error))?;
-    State::from_json(&text).map_err(|error| bad(&error))
 }
 
 /// The transfer function that a volume is shown with at first.

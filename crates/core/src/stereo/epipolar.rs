@@ -155,9 +155,7 @@ impl Epipolar {
     /// Depths between which a convex body lies, by its corners in world space, as far as the reference view goes, metres.
     /// From the near plane if the eye is in the body; nothing if all of it is too near or too far.
     pub fn depths_m(&self, corners_world: &[DVec3]) -> Option<Range<f64>> {
-        let depths_m = corners_world.iter().map(|&at| -self.reference.view_from_world.transform_point3(at).z);
-        let (near_m, far_m) = depths_m
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), depth| (near.min(depth), far.max(depth)));
+        let (near_m, far_m) = self.reference.depths_m(corners_world);
         let depths_m = near_m.max(self.depth_range_m.0)..far_m.min(self.depth_range_m.1);
         (!depths_m.is_empty()).then_some(depths_m)
     }

@@ -46,6 +46,14 @@ pub(crate) fn whole_pixels(positions: impl Iterator<Item = f64>) -> Range<f64> {
 }
 
 impl View {
+    /// The nearest and the furthest depth of some points in world space, metres; negative behind the eye.
+    pub fn depths_m(&self, points_world: &[DVec3]) -> (f64, f64) {
+        points_world
+            .iter()
+            .map(|&at| -self.view_from_world.transform_point3(at).z)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), depth| (near.min(depth), far.max(depth)))
+    }
+
     /// Where a world point is seen, in pixels from the top left; nowhere if it is not in front of the eye.
     pub fn pixel_position(&self, world: DVec3) -> Option<DVec2> {
         let at = self.view_from_world.transform_point3(world);

@@ -43,8 +43,9 @@ fn note_columns(place: SegmentPlace, first: i32, last: i32) {
     }
 }
 
-// Notes what a ray leaves out that is opaque: the derived columns of the slabs behind and the one after them. `noted` are the first and the last that
-// have been looked at for rays of later columns; what these left open is noted. Returns the first and the last by now.
+// Notes what a ray leaves out that is opaque: the derived columns of the slabs behind and the one after them. `noted` are the
+// first and the last that have been looked at for rays of later columns; what these left open is noted. Returns the first and
+// the last by now.
 fn note_cut(place: SegmentPlace, ray: Ray, ended: SegmentedRay, noted: vec2i) -> vec2i {
     let first = place.column - ended.slab;
     let last = place.column - slab_at(ray_depth_m(ray, f32(ray.sample_count) - 0.5)) + 1;

@@ -1,4 +1,4 @@
-// Mirror of `warp::layered_uniform::LayeredWarpUniform`.
+// Mirror of `warp::volumetric_uniform::LayeredWarpUniform`.
 
 struct LayeredWarp {
     // Pixels of the wanted view to change of the homogeneous pixel of the shown one per metre of depth in the wanted view.

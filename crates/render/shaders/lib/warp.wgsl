@@ -1,4 +1,4 @@
-// Mirror of `warp::uniform::WarpUniform`.
+// Mirror of `warp::flat_uniform::WarpUniform`.
 
 struct Warp {
     // Pixels of the wanted view, infinitely far away, to homogeneous pixels of the shown one; z is 1 / depth there.

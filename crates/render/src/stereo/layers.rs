@@ -155,19 +155,17 @@ impl LayerPass {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noop_device::build_on_noop_device;
 
     #[test]
     fn the_pass_builds_on_the_noop_device() {
-        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let kinds = [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float]
-            .map(|format| [Quality::Nearest, Quality::Fast].map(|quality| (format, quality)));
-        for (format, quality) in kinds.into_iter().flatten() {
-            let pass = LayerPass::new(&device, &GroupLayouts::new(&device), format, quality);
-            [pass.cast, pass.composite].iter().for_each(|pipelines| pipelines.build_all_of_pairs(&device));
-        }
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            panic!("{error}");
-        }
+        build_on_noop_device(|device| {
+            let kinds = [LayerFormat::Rgba8Unorm, LayerFormat::Rgba16Float]
+                .map(|format| [Quality::Nearest, Quality::Fast].map(|quality| (format, quality)));
+            for (format, quality) in kinds.into_iter().flatten() {
+                let pass = LayerPass::new(device, &GroupLayouts::new(device), format, quality);
+                [pass.cast, pass.composite].iter().for_each(|pipelines| pipelines.build_all_of_pairs(device));
+            }
+        });
     }
 }

@@ -237,21 +237,19 @@ fn iteration_limit(frame: &PairFrame<'_>) -> Result<u32, PairError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noop_device::build_on_noop_device;
     use crate::shader::compose;
 
     #[test]
     fn the_passes_build_on_the_noop_device() {
-        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        for quality in [Quality::Nearest, Quality::Fast, Quality::Repaired] {
-            let pass = StripPass::new(&device, &GroupLayouts::new(&device), quality);
-            [pass.list, pass.cast, pass.merge]
-                .iter()
-                .for_each(|pipelines| pipelines.build_all_of_pairs(&device));
-        }
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            panic!("{error}");
-        }
+        build_on_noop_device(|device| {
+            for quality in [Quality::Nearest, Quality::Fast, Quality::Repaired] {
+                let pass = StripPass::new(device, &GroupLayouts::new(device), quality);
+                [pass.list, pass.cast, pass.merge]
+                    .iter()
+                    .for_each(|pipelines| pipelines.build_all_of_pairs(device));
+            }
+        });
     }
 
     #[test]

@@ -105,16 +105,14 @@ impl Warps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noop_device::build_on_noop_device;
 
     #[test]
     fn the_pipelines_build_on_the_noop_device() {
-        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        for format in [wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Bgra8UnormSrgb] {
-            Warps::build(&device, format).unwrap();
-        }
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            panic!("{error}");
-        }
+        build_on_noop_device(|device| {
+            for format in [wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Bgra8UnormSrgb] {
+                Warps::build(device, format).unwrap();
+            }
+        });
     }
 }

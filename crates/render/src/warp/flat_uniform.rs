@@ -1,6 +1,7 @@
 //! Mirror of the WGSL struct that warps share.
 
 use super::Shown;
+use crate::uniforms::{Columns, columns, vector};
 use bytemuck::{Pod, Zeroable};
 use wheatstone_core::view::View;
 use wheatstone_core::warp::{GridSettings, PixelMap};
@@ -9,7 +10,7 @@ use wheatstone_core::warp::{GridSettings, PixelMap};
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(super) struct WarpUniform {
-    matrix: [[f32; 4]; 3],
+    matrix: Columns,
     epipole: [f32; 3],
     nearest: f32,
     size: [f32; 2],
@@ -23,8 +24,8 @@ impl WarpUniform {
     /// From the map of wanted pixels to shown ones.
     pub(super) fn new(map: &PixelMap, shown: &Shown<'_>, wanted: &View, settings: GridSettings) -> Self {
         Self {
-            matrix: map.matrix.to_cols_array_2d().map(|[x, y, z]| [x as f32, y as f32, z as f32, 0.0]),
-            epipole: map.epipole.as_vec3().to_array(),
+            matrix: columns(map.matrix.as_mat3()),
+            epipole: vector(map.epipole),
             nearest: shown.nearest as f32,
             size: shown.view.size.map(|side| side as f32),
             near_m: wanted.projection.depth_range_m().0 as f32,

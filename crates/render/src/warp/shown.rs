@@ -24,12 +24,7 @@ pub struct Shown<'a> {
 impl<'a> Shown<'a> {
     /// A picture that was cast from a view with some settings.
     pub fn new(target: &'a Target, view: View, prepared: &Prepared) -> Self {
-        let depth_m = |corner| -view.view_from_world.transform_point3(corner).z;
-        let corners = prepared.parameters().visible_corners_world();
-        let (nearest_m, furthest_m) = corners
-            .map(depth_m)
-            .into_iter()
-            .fold((f64::INFINITY, 0.0), |(near, far), depth_m| (depth_m.min(near), depth_m.max(far)));
+        let (nearest_m, furthest_m) = view.depths_m(&prepared.parameters().visible_corners_world());
         let near_m = view.projection.depth_range_m().0.max(NEAREST_M);
         Self { target, view, nearest: 1.0 / nearest_m.max(near_m), furthest: 1.0 / furthest_m.max(near_m) }
     }

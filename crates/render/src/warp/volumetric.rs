@@ -82,14 +82,12 @@ impl VolumetricWarps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noop_device::build_on_noop_device;
 
     #[test]
     fn the_pipeline_builds_on_the_noop_device() {
-        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        VolumetricWarps::build(&device, wgpu::TextureFormat::Rgba16Float).unwrap();
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            panic!("{error}");
-        }
+        build_on_noop_device(|device| {
+            VolumetricWarps::build(device, wgpu::TextureFormat::Rgba16Float).unwrap();
+        });
     }
 }

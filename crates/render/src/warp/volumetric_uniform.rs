@@ -1,18 +1,16 @@
 //! Mirror of the WGSL struct of volumetric warps.
 
+use crate::uniforms::{Columns, columns, finite, vector};
 use bytemuck::{Pod, Zeroable};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use wheatstone_core::view::{RayField, View};
 use wheatstone_core::warp::{PixelMap, VolumetricSettings};
-
-/// More than any depth; WGSL has no infinity.
-const FURTHEST_M: f64 = 1e30;
 
 /// Mirror of `lib/layered_warp.wgsl`, where the fields are described.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(super) struct LayeredWarpUniform {
-    matrix: [[f32; 4]; 3],
+    matrix: Columns,
     epipole: [f32; 3],
     pixel_tangent: f32,
     wanted_m: [f32; 2],
@@ -35,13 +33,12 @@ impl LayeredWarpUniform {
     /// From the map of wanted pixels to shown ones.
     pub(super) fn new(map: &PixelMap, shown: &View, wanted: &View, settings: &VolumetricSettings) -> Self {
         let [wanted_rays, shown_rays] = [wanted, shown].map(|view| RayField::new(view, DAffine3::IDENTITY));
-        let vector = |v: DVec3| v.as_vec3().to_array();
         let (near_m, far_m) = wanted_rays.depth_range_m;
         Self {
-            matrix: map.matrix.to_cols_array_2d().map(|[x, y, z]| [x as f32, y as f32, z as f32, 0.0]),
+            matrix: columns(map.matrix.as_mat3()),
             epipole: vector(map.epipole),
             pixel_tangent: shown_rays.direction_dx.length() as f32,
-            wanted_m: [near_m, far_m].map(|depth_m| depth_m.min(FURTHEST_M) as f32),
+            wanted_m: [near_m, far_m].map(finite),
             size: shown.size.map(|side| side as f32),
             wanted_direction: vector(wanted_rays.direction),
             step_px: settings.step_px as f32,

@@ -3,6 +3,7 @@
 use super::drag::Drag;
 use crate::failure::Failure;
 use crate::viewer::command::Command;
+use crate::viewer::text_file::read_text_file;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -43,13 +44,7 @@ pub(crate) enum Goal {
 
 /// Reads a script: a step a line, empty lines and lines after `#` left out.
 pub(crate) fn read_steps(path: &Path) -> Result<Vec<Step>, Failure> {
-    let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-    let metadata = std::fs::metadata(path).map_err(|error| bad(&error))?;
-    if !metadata.is_file() || metadata.len() > MOST_BYTES {
-        return Err(bad(&"not a script"));
-    }
-    let text = std::fs::read_to_string(path).map_err(|error| bad(&error))?;
-    parse(&text).map_err(|error| bad(&error))
+    read_text_file(path, MOST_BYTES, "a script", parse)
 }
 
 fn parse(text: &str) -> Result<Vec<Step>, String> {
