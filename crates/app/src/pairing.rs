@@ -47,6 +47,7 @@ impl ValueEnum for MethodName {
             Self::SinglePass(FormName::Tiles),
             Self::SinglePass(FormName::Layers),
             Self::SinglePass(FormName::Layers16),
+            Self::SinglePass(FormName::Volumetric),
         ]
     }
 
@@ -71,6 +72,8 @@ pub(crate) enum FormName {
     /// By one cast into layers of 16 bits per channel; only on a GPU.
     #[value(name = "layers-16")]
     Layers16,
+    /// By one cast that keeps four layers of emission and absorption, warped to the other eye; only on a GPU.
+    Volumetric,
 }
 
 impl FormName {
@@ -81,6 +84,7 @@ impl FormName {
             Self::Tiles => "tiles",
             Self::Layers => "layers",
             Self::Layers16 => "layers-16",
+            Self::Volumetric => "volumetric",
         }
     }
 
@@ -89,12 +93,22 @@ impl FormName {
         self == Self::Strips
     }
 
+    /// Whether it makes pictures of a quality.
+    pub(crate) fn makes(self, quality: QualityName) -> bool {
+        match quality {
+            QualityName::Nearest => self != Self::Volumetric,
+            QualityName::Fast => true,
+            QualityName::Repaired => self.is_repairable(),
+        }
+    }
+
     fn form(self) -> Form {
         match self {
             Self::Strips => Form::Strips,
             Self::Tiles => Form::Tiles,
             Self::Layers => Form::Layers(LayerFormat::Rgba8Unorm),
             Self::Layers16 => Form::Layers(LayerFormat::Rgba16Float),
+            Self::Volumetric => Form::Volumetric,
         }
     }
 }
@@ -117,6 +131,14 @@ impl QualityName {
             Self::Nearest => "nearest",
             Self::Fast => "fast",
             Self::Repaired => "repaired",
+        }
+    }
+
+    /// Why a form does not make pictures of this quality.
+    pub(crate) fn why_not(self) -> &'static str {
+        match self {
+            Self::Repaired => "only strips are repaired",
+            Self::Nearest | Self::Fast => "a warp has one quality, fast",
         }
     }
 
@@ -208,11 +230,9 @@ impl PairArgs {
 
     fn quality(&self, method: MethodName) -> Result<QualityName, Failure> {
         match (method, self.stereo_quality) {
-            (MethodName::SinglePass(form), Some(QualityName::Repaired)) if !form.is_repairable() => {
-                let name = form.name();
-                Err(Failure::input(format!(
-                    "--stereo-method {name} --stereo-quality repaired: only strips are repaired"
-                )))
+            (MethodName::SinglePass(form), Some(quality)) if !form.makes(quality) => {
+                let (form, quality, why) = (form.name(), quality.name(), quality.why_not());
+                Err(Failure::input(format!("--stereo-method {form} --stereo-quality {quality}: {why}")))
             }
             (MethodName::SinglePass(form), None) if !form.is_repairable() => Ok(QualityName::Fast),
             (_, quality) => Ok(quality.unwrap_or(QualityName::Repaired)),

@@ -84,6 +84,9 @@ pub struct CastParameters {
     pub box_lo: Vec3A,
     /// High corner of the visible box, texture space.
     pub box_hi: Vec3A,
+    /// Low and high corner of a box outside of which nothing contributes to a picture, texture space: the whole volume, unless more is
+    /// known ([`CastParameters::occupied_within`]).
+    pub occupied: [Vec3A; 2],
     /// Visible half-space in texture space: `xyz · p + w ≥ 0`.
     pub plane: Vec4,
     /// Vectors in texture space to metric space (world axes, voxel lengths).
@@ -138,6 +141,7 @@ impl CastParameters {
             box_lo: settings.clip.box_lo.clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),
             // A box whose corners are the wrong way round is empty.
             box_hi: settings.clip.box_hi.max(settings.clip.box_lo).clamp(DVec3::ZERO, DVec3::ONE).as_vec3a(),
+            occupied: [Vec3A::ZERO, Vec3A::ONE],
             plane: plane_in_texture(settings, placement),
             metric_from_texture: metric_from_texture.as_mat3(),
             texture_from_metric: texture_from_metric.as_mat3(),
@@ -171,10 +175,31 @@ impl CastParameters {
         (diagonal * self.sampling_factor).ceil() as u32 + 1
     }
 
+    /// The same, where all occupied blocks are in a box, texture space. Only composites whose samples are looked up one by one take that
+    /// into account; the others see further than their blocks.
+    pub fn occupied_within(self, occupied: [Vec3; 2]) -> Self {
+        let is_by_sample = matches!(self.classifier, Classifier::Value | Classifier::ValueGradient);
+        if self.mode == Mode::Composite && is_by_sample {
+            Self { occupied: occupied.map(Vec3A::from), ..self }
+        } else {
+            self
+        }
+    }
+
     /// The corners of the visible box, world space, metres.
     pub fn visible_corners_world(&self) -> [DVec3; 8] {
+        self.corners_world(self.box_lo, self.box_hi)
+    }
+
+    /// The corners of the part of the visible box that may be occupied, world space, metres.
+    pub fn occupied_corners_world(&self) -> [DVec3; 8] {
+        let [lo, hi] = self.occupied.map(|corner| corner.clamp(self.box_lo, self.box_hi));
+        self.corners_world(lo, hi)
+    }
+
+    fn corners_world(&self, lo: Vec3A, hi: Vec3A) -> [DVec3; 8] {
         let world_from_texture = self.texture_from_world.inverse();
-        let [lo, hi] = [self.box_lo, self.box_hi].map(|corner| corner.as_dvec3());
+        let [lo, hi] = [lo, hi].map(|corner| corner.as_dvec3());
         std::array::from_fn(|i| {
             let is_high = BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0);
             world_from_texture.transform_point3(DVec3::select(is_high, hi, lo))

@@ -11,7 +11,9 @@ use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, 
 use crate::piece::Picture;
 use crate::squares::Squares;
 use crate::stamps::Stamps;
-use crate::stereo::{LayerFormat, LayerPass, PairTilePass, Quality, RepairPass, Repairs, StripPass};
+use crate::stereo::{
+    LayerFormat, LayerPass, NovelViewPass, PairTilePass, Quality, RepairPass, Repairs, StripPass,
+};
 use crate::target::{LAYERS, Target, target_texture};
 use crate::tile_pass::{self, TileList, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
@@ -48,6 +50,7 @@ pub struct Renderer {
     repairs: Option<Repairs>,
     pair_tile_passes: HashMap<Quality, PairTilePass>,
     layer_passes: HashMap<(LayerFormat, Quality), LayerPass>,
+    pub(crate) novel_view_pass: Option<NovelViewPass>,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
@@ -146,6 +149,7 @@ impl Renderer {
             repairs: None,
             pair_tile_passes: HashMap::new(),
             layer_passes: HashMap::new(),
+            novel_view_pass: None,
             sampler,
             unused,
             no_map,
@@ -413,7 +417,7 @@ impl Renderer {
     }
 
     /// Casts one view piece by piece: rows, and for rays that are too long for one dispatch ranges of samples.
-    fn cast(
+    pub(crate) fn cast(
         &mut self,
         gpu: &Gpu,
         prepared: &Prepared,
@@ -441,7 +445,7 @@ impl Renderer {
         let reads = cast_pass::reads_per_sample(parameters);
         let bands = band_samples(parameters, view);
         let bands_with_states = if may_be_split { state_rows / BAND_ROWS } else { u32::MAX };
-        let covered = Squares::covered(view, &parameters.visible_corners_world());
+        let covered = Squares::covered(view, &parameters.occupied_corners_world());
         let mut piece = ViewUniform::of_squares(parameters, view, &covered);
         self.blank(gpu, target, &covered);
         if let Some(list) = &list {

@@ -44,6 +44,9 @@ pub struct Target {
 }
 
 impl Target {
+    /// Format of the colours: premultiplied.
+    pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
     /// Makes the textures of a picture.
     ///
     /// # Errors
@@ -51,7 +54,7 @@ impl Target {
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         check_size(size, gpu.capabilities().largest_2d_side)?;
         let [color, depth] = ["color target", "depth target"]
-            .map(|label| target_texture(gpu, label, wgpu::TextureFormat::Rgba32Float, size, 1));
+            .map(|label| target_texture(gpu, label, Self::COLOR_FORMAT, size, 1));
         gpu.check()?;
         Ok(Self { size, color, depth, layers: None, drawn: Squares::default() })
     }
@@ -62,16 +65,7 @@ impl Target {
     /// As [`Target::new`].
     pub fn with_layers(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         let target = Self::new(gpu, size)?;
-        let bytes = u64::from(PIXEL_BYTES * LAYERS) * u64::from(size[0]) * u64::from(size[1]);
-        let largest = gpu.capabilities().largest_texture;
-        if bytes > largest {
-            return Err(GpuError::Refused {
-                reason: format!("{bytes} bytes of layers; a texture holds {largest}"),
-            });
-        }
-        let layers = target_texture(gpu, "layers", wgpu::TextureFormat::Rgba32Uint, size, LAYERS);
-        gpu.check()?;
-        Ok(Self { layers: Some(layers), ..target })
+        Ok(Self { layers: Some(layer_texture(gpu, size)?), ..target })
     }
 
     /// The buffer of zeros that [`Target::blank`] copies.
@@ -99,37 +93,11 @@ impl Target {
         zeros: &wgpu::Buffer,
         drawn: &Squares,
     ) {
-        let columns = drawn.columns.start * BAND_ROWS..self.size[0].min(drawn.columns.end * BAND_ROWS);
-        let rows = drawn.bands.start * BAND_ROWS..self.size[1].min(drawn.bands.end * BAND_ROWS);
-        let row_bytes = columns.len() as u32 * PIXEL_BYTES;
-        let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        if columns.is_empty() {
-            return;
+        for texture in [&self.color, &self.depth] {
+            blank_squares(encoder, zeros, (texture, 0), drawn);
         }
-        let rows_at_once = ZERO_BYTES as u32 / padded_row_bytes;
-        for first_row in rows.clone().step_by(rows_at_once as usize) {
-            let layers = self.layers.iter().flat_map(|layers| (0..LAYERS).map(move |z| (layers, z)));
-            for (texture, z) in [(&self.color, 0), (&self.depth, 0)].into_iter().chain(layers) {
-                encoder.copy_buffer_to_texture(
-                    wgpu::TexelCopyBufferInfo {
-                        buffer: zeros,
-                        layout: wgpu::TexelCopyBufferLayout {
-                            offset: 0,
-                            bytes_per_row: Some(padded_row_bytes),
-                            rows_per_image: None,
-                        },
-                    },
-                    wgpu::TexelCopyTextureInfo {
-                        origin: wgpu::Origin3d { x: columns.start, y: first_row, z },
-                        ..texture.as_image_copy()
-                    },
-                    wgpu::Extent3d {
-                        width: columns.len() as u32,
-                        height: rows_at_once.min(rows.end - first_row),
-                        depth_or_array_layers: 1,
-                    },
-                );
-            }
+        if let Some(layers) = &self.layers {
+            blank_layers(encoder, zeros, layers, drawn);
         }
     }
 
@@ -158,7 +126,78 @@ impl Target {
     }
 }
 
-/// A texture that casts write and later passes read.
+/// Bytes of the layers of a picture.
+pub(crate) fn layer_bytes([width, height]: [u32; 2]) -> u64 {
+    u64::from(PIXEL_BYTES * LAYERS) * u64::from(width) * u64::from(height)
+}
+
+/// Room for the layers of a picture.
+///
+/// # Errors
+/// More than a texture holds, no memory, a lost device.
+pub(crate) fn layer_texture(gpu: &Gpu, size: [u32; 2]) -> Result<wgpu::Texture, GpuError> {
+    let (bytes, largest) = (layer_bytes(size), gpu.capabilities().largest_texture);
+    if bytes > largest {
+        return Err(GpuError::Refused {
+            reason: format!("{bytes} bytes of layers; a texture holds {largest}"),
+        });
+    }
+    let layers = target_texture(gpu, "layers", wgpu::TextureFormat::Rgba32Uint, size, LAYERS);
+    gpu.check()?;
+    Ok(layers)
+}
+
+/// Encodes the emptying of some squares of all layers of a picture.
+pub(crate) fn blank_layers(
+    encoder: &mut wgpu::CommandEncoder,
+    zeros: &wgpu::Buffer,
+    layers: &wgpu::Texture,
+    drawn: &Squares,
+) {
+    for z in 0..LAYERS {
+        blank_squares(encoder, zeros, (layers, z), drawn);
+    }
+}
+
+/// Encodes the emptying of some squares of a layer of a texture.
+fn blank_squares(
+    encoder: &mut wgpu::CommandEncoder,
+    zeros: &wgpu::Buffer,
+    (texture, z): (&wgpu::Texture, u32),
+    drawn: &Squares,
+) {
+    let columns = drawn.columns.start * BAND_ROWS..texture.width().min(drawn.columns.end * BAND_ROWS);
+    let rows = drawn.bands.start * BAND_ROWS..texture.height().min(drawn.bands.end * BAND_ROWS);
+    if columns.is_empty() {
+        return;
+    }
+    let row_bytes = columns.len() as u32 * PIXEL_BYTES;
+    let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let rows_at_once = ZERO_BYTES as u32 / padded_row_bytes;
+    for first_row in rows.clone().step_by(rows_at_once as usize) {
+        encoder.copy_buffer_to_texture(
+            wgpu::TexelCopyBufferInfo {
+                buffer: zeros,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded_row_bytes),
+                    rows_per_image: None,
+                },
+            },
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: columns.start, y: first_row, z },
+                ..texture.as_image_copy()
+            },
+            wgpu::Extent3d {
+                width: columns.len() as u32,
+                height: rows_at_once.min(rows.end - first_row),
+                depth_or_array_layers: 1,
+            },
+        );
+    }
+}
+
+/// A texture that casts write, warps render to and later passes read.
 pub(crate) fn target_texture(
     gpu: &Gpu,
     label: &str,
@@ -174,6 +213,7 @@ pub(crate) fn target_texture(
         dimension: wgpu::TextureDimension::D2,
         format,
         usage: wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::RENDER_ATTACHMENT
             | wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::COPY_SRC
             | wgpu::TextureUsages::COPY_DST,

@@ -97,6 +97,7 @@ impl GpuEngine {
         skipping: &Skipping,
     ) -> Result<Shot, GpuError> {
         let gradient_map = self.gradient_map(parameters, skipping)?;
+        let mut parameters = parameters.clone();
         let (structures, leaping) = match self.plan(skipping.request) {
             None => (Structures::Nothing, Leaping::NOTHING),
             Some(plan) if matches!(parameters.mode, Mode::Mip | Mode::MinIp) => {
@@ -105,7 +106,7 @@ impl GpuEngine {
                 let leaping = Leaping::over_idle_blocks(&plan, ranges.byte_size());
                 (Structures::Ranges(ranges), leaping)
             }
-            Some(plan) => self.skip_map(parameters, gradient_map.as_ref(), &plan)?,
+            Some(plan) => self.skip_map(&mut parameters, gradient_map.as_ref(), &plan)?,
         };
         let leap = match &structures {
             Structures::Nothing => Leap::Nothing,
@@ -113,7 +114,7 @@ impl GpuEngine {
             Structures::Ranges(ranges) => Leap::IdleBlocks(ranges),
         };
         let sources = Sources { volume: &self.volume, gradient_map: gradient_map.as_ref(), leap };
-        let prepared = self.renderer.prepare(&self.gpu, &sources, parameters.clone())?;
+        let prepared = self.renderer.prepare(&self.gpu, &sources, parameters)?;
         let gradient_map =
             gradient_map.as_ref().map(|map| GradientMapSize { depth: map.depth(), bytes: map.byte_size() });
         self.scenes.push(Scene { prepared: Arc::new(prepared), gradient_map, leaping });
@@ -124,9 +125,10 @@ impl GpuEngine {
         request.plan(self.volume.dims(), self.storage, self.gpu.capabilities().skip_host())
     }
 
+    /// What rays leap over; the parameters get to know where the volume is occupied.
     fn skip_map(
         &mut self,
-        parameters: &CastParameters,
+        parameters: &mut CastParameters,
         gradient_map: Option<&GpuGradientMap>,
         plan: &SkipPlan,
     ) -> Result<(Structures, Leaping), GpuError> {
@@ -134,8 +136,9 @@ impl GpuEngine {
         let map = builder.map(&self.gpu, parameters, plan.structure)?;
         let distances = map.read(&self.gpu)?;
         let blocks = &distances[..map.grid().block_count()];
-        let occupied = blocks.iter().filter(|&&distance| distance == 0).count();
-        let occupied_fraction = occupied as f64 / blocks.len() as f64;
+        let occupied = || (0..blocks.len()).filter(|&block| blocks[block] == 0);
+        let occupied_fraction = occupied().count() as f64 / blocks.len() as f64;
+        *parameters = parameters.clone().occupied_within(map.grid().bounds(occupied()));
         if !plan.pays(occupied_fraction) {
             return Ok((Structures::Nothing, Leaping::not_worth_it(occupied_fraction)));
         }

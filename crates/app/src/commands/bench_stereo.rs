@@ -80,7 +80,7 @@ pub(crate) struct StereoBenchArgs {
     #[arg(long, value_name = "METHODS", value_enum, value_delimiter = ',')]
     methods: Vec<FormName>,
 
-    /// Qualities of the derived eye; only strips are repaired [default: fast,repaired].
+    /// Qualities of the derived eye; only strips are repaired, and volumetric is fast alone [default: fast,repaired].
     #[arg(long, value_name = "QUALITIES", value_enum, value_delimiter = ',')]
     qualities: Vec<QualityName>,
 
@@ -221,15 +221,18 @@ impl StereoBenchArgs {
         };
         let of_form =
             |&form| qualities.iter().map(move |&quality| Pairing { form, quality, reference: Eye::Left });
-        let can_be_made =
-            |pairing: &Pairing| pairing.quality != QualityName::Repaired || pairing.form.is_repairable();
+        let can_be_made = |pairing: &Pairing| pairing.form.makes(pairing.quality);
         let (made, left_out): (Vec<_>, Vec<_>) = forms.iter().flat_map(of_form).partition(can_be_made);
-        if made.is_empty() {
-            return Err(Failure::input("--qualities repaired: only strips are repaired"));
+        if let ([], [Pairing { quality, .. }, ..]) = (&made[..], &left_out[..]) {
+            return Err(Failure::input(format!("--qualities {}: {}", quality.name(), quality.why_not())));
         }
-        if !self.qualities.is_empty() && !left_out.is_empty() {
-            let names: Vec<&str> = left_out.iter().map(|pairing| pairing.form.name()).collect();
-            eprintln!("note: only strips are repaired: repaired {} left out", names.join(", "));
+        for quality in &self.qualities {
+            let of_quality = left_out.iter().filter(|pairing| pairing.quality == *quality);
+            let names: Vec<&str> = of_quality.map(|pairing| pairing.form.name()).collect();
+            if !names.is_empty() {
+                let names = names.join(", ");
+                eprintln!("note: {}: {} {names} left out", quality.why_not(), quality.name());
+            }
         }
         Ok(made)
     }

@@ -15,6 +15,7 @@ use super::bench::{Device, Opened, default_transfer, open};
 use crate::backend::{BackendChoice, Engine, note_fallback};
 use crate::camera::Up;
 use crate::failure::Failure;
+use crate::layering::{Layering, LayeringArgs};
 use crate::output::{make_folder, print, print_json};
 use crate::progress::Bar;
 use crate::skipping::{SkipArgs, SkipName};
@@ -91,6 +92,9 @@ pub(crate) struct WarpBenchArgs {
     #[arg(long, value_name = "WARPS", value_enum, value_delimiter = ',')]
     warps: Vec<WarpName>,
 
+    #[command(flatten)]
+    layering: LayeringArgs,
+
     /// Turn of the head within the second, degrees.
     #[arg(long, value_name = "DEG", default_value_t = 30.0, value_parser = spec::within(-180.0..=180.0), allow_negative_numbers = true)]
     turn_deg: f64,
@@ -152,10 +156,11 @@ struct Measured {
 pub(crate) fn run(args: &WarpBenchArgs) -> Result<(), Failure> {
     [&args.plot, &args.error_pictures].into_iter().flatten().try_for_each(|folder| make_folder(folder))?;
     let pace = args.pace()?;
+    let layering = args.layering.resolve()?;
     let mut device = None;
     let mut measured = Measured::default();
     for volume in &args.volumes {
-        device = Some(args.measure_volume(volume, &pace, &mut measured)?);
+        device = Some(args.measure_volume(volume, &pace, &layering, &mut measured)?);
     }
     let Measured { traces, costs, keepings } = measured;
     if let Some(folder) = &args.plot {
@@ -165,6 +170,7 @@ pub(crate) fn run(args: &WarpBenchArgs) -> Result<(), Failure> {
         return print_json(&json!({
             "device": device.as_ref().map(Device::to_json),
             "size": args.size,
+            "layers": layering.to_json(),
             "refresh_hz": args.live.is_none().then_some(args.refresh_hz),
             "render_ms": args.live.is_none().then_some(args.render_ms),
             "live": args.live.map(|_| keepings.iter().map(Keeping::to_json).collect::<Vec<_>>()),
@@ -198,6 +204,7 @@ impl WarpBenchArgs {
         &self,
         described: &str,
         pace: &Pace,
+        layering: &Layering,
         measured: &mut Measured,
     ) -> Result<Device, Failure> {
         let Opened { volume, name, benchmark } = open(described)?;
@@ -221,7 +228,8 @@ impl WarpBenchArgs {
         let middle = orbit.view(Projection::Perspective(frustum), self.size);
         let extent = Extent { turn_rad: self.turn_deg.to_radians(), sideways_m: self.sideways };
         let warps = if self.warps.is_empty() { WarpName::value_variants() } else { &self.warps };
-        let mut camera = Camera::new(&mut engine, shot, (&volume, storage, &parameters), middle, warps)?;
+        let layering = warps.contains(&WarpName::Volumetric).then_some(layering);
+        let mut camera = Camera::new(&mut engine, shot, (&volume, storage, &parameters), middle, layering)?;
         let timed = Timed { volume: &name, shots, middle: &middle, extent, warps };
         measured.costs.push(costs::measure(&timed, &mut camera)?);
         for &motion in &self.motions {

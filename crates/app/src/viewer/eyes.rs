@@ -56,7 +56,7 @@ impl Way {
             // From where it was cast a picture is the same by any warp.
             WarpName::Grid if moved_m == 0.0 => Self::Quad(quality),
             WarpName::Grid => {
-                let corners = front.prepared().parameters().visible_corners_world();
+                let corners = front.prepared().parameters().occupied_corners_world();
                 let most_steps =
                     if gpu.description().is_software { MOST_STEPS_ON_CPU } else { f64::INFINITY };
                 let columns = columns_moved(shown, moved_m, &corners);

@@ -255,6 +255,8 @@ fn one_cast_makes_both_eyes_on_the_gpu() {
         ("tiles", "fast", "right", 48),
         ("layers", "fast", "left", 0),
         ("layers-16", "fast", "left", 0),
+        ("volumetric", "fast", "left", 0),
+        ("volumetric", "fast", "right", 48),
     ];
     for (method, quality, eye, half) in ways {
         // Asked for by name, a pair of one cast is made on a GPU, software or not.

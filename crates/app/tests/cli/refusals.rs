@@ -82,6 +82,8 @@ fn contradictions_are_refused() {
     refuses(&bench, &["--reference-eye", "right", "--stereo", "right"], "--reference-eye needs --stereo");
     let layers = ["--stereo", "anaglyph", "--stereo-method", "layers", "--stereo-quality", "repaired"];
     refuses(&bench, &layers, "only strips are repaired");
+    let warp = ["--stereo", "anaglyph", "--stereo-method", "volumetric", "--stereo-quality", "nearest"];
+    refuses(&bench, &warp, "a warp has one quality");
     let heat_map = ["--show", "samples", "--stereo", "anaglyph", "--stereo-method", "strips"];
     refuses(&bench, &heat_map, "two-pass");
     refuses(&bench, &["--stereo", "wobble"], ".gif");
@@ -159,6 +161,9 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         &["bench", "warp", "box:8", "--live", "0"],
         &["bench", "warp", "box:8", "--live", "--render-ms", "30"],
         &["bench", "warp", "box:8", "--plot", "file"],
+        &["bench", "warp", "box:8", "--warp-thresholds", "0.5,0.1"],
+        &["bench", "warp", "box:8", "--warp-thresholds", "0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9"],
+        &["bench", "warp", "box:8", "--warp-steps", "0"],
         &["bench", "skip", "beetle:0"],
         &["bench", "skip", "beetle:8", "--block-sizes", "4,99"],
     ] {

@@ -296,7 +296,7 @@ fn bench_warp_traces_every_warp() {
     let run = bench.run(&[&small[..], &folders].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);
     let json = run.json();
-    assert_eq!(keys(&json), ["costs", "device", "live", "refresh_hz", "render_ms", "rows", "size"]);
+    assert_eq!(keys(&json), ["costs", "device", "layers", "live", "refresh_hz", "render_ms", "rows", "size"]);
     let rows = json["rows"].as_array().unwrap();
     let row_keys = [
         "cast_ms",

@@ -1,6 +1,7 @@
 //! Which blocks can contribute to a picture.
 
 use super::{BlockGrid, BlockRanges, SecondAxis, Visibility};
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// Blocks that a thread takes at once.
@@ -57,6 +58,11 @@ impl Occupancy {
             }
         };
         Self { grid, occupied }
+    }
+
+    /// Low and high corner of the box about all occupied blocks, texture space.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        self.grid.bounds((0..self.occupied.len()).filter(|&block| self.occupied[block]))
     }
 
     /// An occupancy that is known.

@@ -45,10 +45,10 @@ impl GridSettings {
 }
 
 /// The picture of the shown view as the wanted view sees it if each pixel is a piece of surface at its first hit (VR §5.3.2).
-/// Pixels without a hit are infinitely far away, so that without any depth, or under a turn, this is [`quad`](super::quad).
+/// Pixels without a hit are infinitely far away, so that without any depth, or under a turn, this is [`quad`](super::quad) at infinity.
 ///
 /// Every wanted pixel looks for what its ray meets. At inverse depth q (1/m) in the shown view the ray is at the pixel
-/// `s + q·g` of it, where s is where [`quad`](super::quad) reads and g = `epipole.xy − epipole.z·s` of the [`PixelMap`] from
+/// `s + q·g` of it, where s is where [`quad`](super::quad) at infinity reads and g = `epipole.xy − epipole.z·s` of the [`PixelMap`] from
 /// wanted to shown: disparity q·|g| is how far along the epipolar line. From the nearest disparity to none, pixel by pixel, the first
 /// pixel whose own disparity is that of the ray or more is hit, if the surface goes on from the one before. If it is torn there, the
 /// ray passes behind the near side; what it meets only if that ends is hit all the same, and else it has gone through a hole,

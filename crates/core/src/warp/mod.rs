@@ -1,7 +1,7 @@
 //! Warps: an old picture shown from a new pose, so that the display follows the head however long a cast takes.
 //!
-//! After Buchacher's thesis (VR §5.3). [`quad`] moves the picture as if all of it were infinitely far away: exact for a turn,
-//! without parallax. [`grid`] moves each pixel by the depth of its first hit, without rubber sheets across edges of depth.
+//! After Buchacher's thesis (VR §5.3). [`quad`] moves the picture as if all of it were on a plane: exact for a turn, with the
+//! parallax of one depth. [`grid`] moves each pixel by the depth of its first hit, without rubber sheets across edges of depth.
 //! [`volumetric`] casts novel rays through the layers of emission and absorption that a cast leaves ([`EmissionAbsorption`]):
 //! what is translucent keeps its depths. Pictures keep premultiplied colours throughout; what was never seen stays transparent.
 //!
@@ -17,6 +17,7 @@ mod grid;
 mod medium;
 mod pixel_map;
 mod quad;
+mod reach;
 mod volumetric;
 
 pub use emission_absorption::{EmissionAbsorption, Layer, LayerError, LayerThresholds, MOST_LAYERS};
@@ -25,4 +26,5 @@ pub use grid::{GridSettings, MOST_GRID_STEPS, grid};
 pub use medium::Medium;
 pub use pixel_map::{Landing, PixelMap};
 pub use quad::quad;
+pub use reach::Reach;
 pub use volumetric::{VolumetricSettings, volumetric};

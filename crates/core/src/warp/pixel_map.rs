@@ -56,6 +56,21 @@ impl PixelMap {
         })
     }
 
+    /// The map for what is on a plane across the other view at an inverse depth in it, 1/m, which is all of the first view's picture:
+    /// what lands at s from infinity lands at `s + q · (epipole.xy − epipole.z · s)`.
+    pub fn onto_plane(&self, inverse_depth: f64) -> Self {
+        let q = self.plane_before_eye(inverse_depth);
+        let from_infinity = DMat3::from_diagonal((DVec2::ONE - q * self.epipole.z).extend(1.0));
+        let by_depth = DMat3::from_cols(DVec3::ZERO, DVec3::ZERO, q * self.epipole.truncate().extend(0.0));
+        Self { matrix: (from_infinity + by_depth) * self.matrix, epipole: DVec3::ZERO }
+    }
+
+    /// Inverse depth of a plane across the other view, 1/m, or, if the first view's eye has come more than halfway to it, of the one
+    /// twice as far as the eye is.
+    pub fn plane_before_eye(&self, inverse_depth: f64) -> f64 {
+        if inverse_depth * self.epipole.z > 0.5 { 0.5 / self.epipole.z } else { inverse_depth }
+    }
+
     /// Where the point at a pixel position and an inverse depth lands; nowhere unless in front of the other eye.
     pub fn at(&self, position: DVec2, inverse_depth: f64) -> Option<Landing> {
         let h = self.matrix * position.extend(1.0) + inverse_depth * self.epipole;

@@ -1,4 +1,4 @@
-//! The picture on the plane at infinity.
+//! The picture on a plane.
 
 use super::{PixelMap, WarpError};
 use crate::image::Image;
@@ -6,17 +6,19 @@ use crate::view::View;
 use glam::{DVec2, DVec4, Vec4};
 use rayon::prelude::*;
 
-/// The picture of the shown view as the wanted view sees it if all of it is infinitely far away (VR §5.3.1): exact where only
-/// the orientation or the window differs, blind to how far the eye has moved. Bilinear between premultiplied colours,
-/// transparent outside of the picture; all depths are infinite. Sizes and windows of the views may differ.
+/// The picture of the shown view as the wanted view sees it if all of it is on a plane across the shown view, at an inverse depth in
+/// 1/m (VR §5.3.1, which takes the far clipping plane; 0 is infinity): exact where only the orientation or the window differs; of what
+/// the eye moves sideways, right for what is at that depth ([`Reach::middle`](super::Reach::middle) is in the midst of a body).
+/// Bilinear between premultiplied colours, transparent outside of the picture; all depths are infinite. Sizes and windows of the
+/// views may differ.
 ///
-/// A shader does the same with one thread per wanted pixel: `h = matrix · (x + ½, y + ½, 1)` with the [`PixelMap`] from wanted
-/// to shown, and four texels about `h.xy / h.z`.
+/// A shader does the same with one thread per wanted pixel: `h = matrix · (x + ½, y + ½, 1)` with the [`PixelMap::onto_plane`] from
+/// wanted to shown, and four texels about `h.xy / h.z`.
 ///
 /// # Errors
 /// A picture that is not of the shown view, a parallel projection, views with numbers that are not finite or without area.
-pub fn quad(shown: &View, image: &Image, wanted: &View) -> Result<Image, WarpError> {
-    let shown_from_wanted = PixelMap::between(wanted, shown)?;
+pub fn quad(shown: &View, image: &Image, wanted: &View, inverse_depth: f64) -> Result<Image, WarpError> {
+    let shown_from_wanted = PixelMap::between(wanted, shown)?.onto_plane(inverse_depth);
     WarpError::unless_of(image, shown)?;
     let [width, height] = wanted.size;
     let mut warped = Image::transparent(width, height);

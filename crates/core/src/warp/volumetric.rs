@@ -235,7 +235,8 @@ struct Segment<'a> {
 struct Sheet {
     starts_m: [f64; 2],
     ends_m: [f64; 2],
-    color: DVec4,
+    /// At both ends.
+    colors: [DVec4; 2],
     absorption_per_m: f64,
 }
 
@@ -244,7 +245,7 @@ impl Sheet {
         Self {
             starts_m: ends.map(|stratum| stratum.start_m),
             ends_m: ends.map(|stratum| stratum.end_m),
-            color: ends[0].color + ends[1].color,
+            colors: ends.map(|stratum| stratum.color),
             absorption_per_m: 0.5 * (ends[0].absorption_per_m + ends[1].absorption_per_m),
         }
     }
@@ -286,9 +287,13 @@ impl Segment<'_> {
             return;
         }
         let step_m = there.wanted_m - here.wanted_m;
-        let taken_m = (inside.end - inside.start) * step_m;
+        let length = inside.end - inside.start;
+        let taken_m = length * step_m;
         let optical_depth = sheet.absorption_per_m * taken_m * metres_per_depth;
-        let rgb = sheet.color.truncate() / sheet.color.w;
+        // Where about the middle of what is seen is: halfway through a translucent sheet, at the front of an opaque one.
+        let seen_at = inside.start + length / (2.0 + optical_depth);
+        let color = sheet.colors[0].lerp(sheet.colors[1], seen_at);
+        let rgb = color.truncate() / color.w.max(f64::MIN_POSITIVE);
         light.add(rgb, optical_depth, here.wanted_m + inside.start * step_m, taken_m);
     }
 }

@@ -20,7 +20,7 @@ fn before_plates() -> View {
 /// Dissimilarity from the true picture of the wanted view: of the picture as it is, of the quad and of the grid.
 fn dissimilarities(cast: impl Fn(&View) -> Image, shown: &View, wanted: &View) -> [f64; 3] {
     let (image, truth) = (cast(shown), cast(wanted));
-    let by_quad = quad(shown, &image, wanted).unwrap();
+    let by_quad = quad(shown, &image, wanted, 0.0).unwrap();
     let by_grid = grid(shown, &image, wanted, PLAIN).unwrap();
     [&image, &by_quad, &by_grid].map(|picture| dssim(picture, &truth))
 }
@@ -56,7 +56,7 @@ fn without_depth_it_is_the_quad() {
     let wanted = moved(&view, DVec3::splat(0.03), DMat3::from_rotation_x(0.05));
     let difference = largest_difference(
         &grid(&view, &image, &wanted, PLAIN).unwrap(),
-        &quad(&view, &image, &wanted).unwrap(),
+        &quad(&view, &image, &wanted, 0.0).unwrap(),
     );
     assert!(difference < 1e-3, "{difference}");
 }

@@ -1,7 +1,7 @@
 // Mirror of `warp::flat_uniform::WarpUniform`.
 
 struct Warp {
-    // Pixels of the wanted view, infinitely far away, to homogeneous pixels of the shown one; z is 1 / depth there.
+    // Pixels of the wanted view, infinitely far away (of a quad: on its plane), to homogeneous pixels of the shown one; z is 1 / depth there.
     matrix: mat3x3f,
     // Homogeneous pixel of the wanted eye in the shown picture, per metre.
     epipole: vec3f,
@@ -20,7 +20,7 @@ struct Warp {
 @group(0) @binding(0) var<uniform> warp: Warp;
 // Of the shown picture: premultiplied colour.
 @group(0) @binding(1) var color_source: texture_2d<f32>;
-// Depth of the first hit in metres, ..., 1 where something was hit.
+// Depth of the first hit in metres; 0, or more than any other, without one.
 @group(0) @binding(2) var depth_source: texture_2d<f32>;
 
 // Colour of a pixel; transparent outside of the picture.

@@ -104,6 +104,6 @@ fn weights(along: vec2f, counts: vec4f) -> vec4f {
 
 // Disparity of the pixel nearest to one.
 fn disparity_px(ray: Ray, pixel: vec2f) -> f32 {
-    let hit = textureLoad(depth_source, vec2i(clamp(pixel, vec2f(0.0), warp.size - 1.0)), 0);
-    return select(0.0, ray.disparity_m / hit.x, hit.w > 0.0);
+    let depth_m = textureLoad(depth_source, vec2i(clamp(pixel, vec2f(0.0), warp.size - 1.0)), 0).x;
+    return select(0.0, ray.disparity_m / depth_m, depth_m > 0.0);
 }

@@ -1,7 +1,7 @@
 import package::lib::cover_picture::{cover_picture};
 import package::lib::warp::{color_at, warp};
 
-// The picture on the plane at infinity (VR 5.3.1).
+// The picture on a plane (VR 5.3.1), which the matrix is that of.
 @fragment
 fn warp_quad(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let h = warp.matrix * vec3f(position.xy, 1.0);

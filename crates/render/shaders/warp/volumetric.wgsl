@@ -163,12 +163,15 @@ fn through_step(
     let first_part = part_inside(here, there, start_m, end_m, to_start_m, to_end_m, vec4f(0.0), 0.5 + 0.5 * share);
     let second_part =
         part_inside(here, there, next_start_m, next_end_m, next_start_m, next_end_m, 0.5 + 0.5 * share, vec4f(1.0));
-    let first = exp(-absorption * first_part * step_m);
-    let second = exp(-next.absorption_per_m * second_part * step_m);
-    let a = max(column.a + share * next.a, vec4f(TINY));
-    let r = (column.r + share * next.r) / a;
-    let g = (column.g + share * next.g) / a;
-    let b = (column.b + share * next.b) / a;
+    let first_depth = absorption * first_part.length * step_m;
+    let first = exp(-first_depth);
+    let second = exp(-next.absorption_per_m * second_part.length * step_m);
+    // Where about the middle of what is seen of a sheet is: halfway through a translucent one, at the front of an opaque one.
+    let seen_at = share * min(first_part.begin + first_part.length / (2.0 + first_depth), vec4f(1.0));
+    let a = max(mix(column.a, next.a, seen_at), vec4f(TINY));
+    let r = mix(column.r, next.r, seen_at) / a;
+    let g = mix(column.g, next.g, seen_at) / a;
+    let b = mix(column.b, next.b, seen_at) / a;
     let next_a = max(next.a, vec4f(TINY));
     var light = before;
     light = add(light, first.x, second.x, vec3f(r.x, g.x, b.x), vec3f(next.r.x, next.g.x, next.b.x) / next_a.x);
@@ -184,7 +187,13 @@ fn add(before: Light, first: f32, second: f32, rgb: vec3f, next_rgb: vec3f) -> L
     return Light(color, after * second);
 }
 
-// How much of a step, from one share of it to another, is in sheets.
+// A part of a step.
+struct Part {
+    begin: vec4f,
+    length: vec4f,
+}
+
+// What of a step, from one share of it to another, is in sheets.
 fn part_inside(
     here: Place,
     there: Place,
@@ -194,7 +203,7 @@ fn part_inside(
     to_end_m: vec4f,
     first: vec4f,
     last: vec4f,
-) -> vec4f {
+) -> Part {
     let below = here.shown_m - start_m;
     let below_slope = there.shown_m - to_start_m - below;
     let above = end_m - here.shown_m;
@@ -209,5 +218,5 @@ fn part_inside(
     begin = select(begin, max(begin, above_root), above_slope > vec4f(0.0));
     end = select(end, min(end, above_root), above_slope < vec4f(0.0));
     end = select(end, begin, above_slope == vec4f(0.0) & above < vec4f(0.0));
-    return max(end - begin, vec4f(0.0));
+    return Part(begin, max(end - begin, vec4f(0.0)));
 }

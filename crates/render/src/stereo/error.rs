@@ -1,8 +1,10 @@
 //! Why a pair of pictures is not made in one cast.
 
 use crate::gpu::GpuError;
+use crate::layers_error::LayersError;
 use thiserror::Error;
 use wheatstone_core::stereo::StereoError;
+use wheatstone_core::warp::WarpError;
 
 /// Why the picture of one eye cannot be derived from the cast of the other. But for [`PairError::Gpu`], two casts can make
 /// the pair.
@@ -38,7 +40,25 @@ pub enum PairError {
         /// Most bytes.
         most_bytes: u64,
     },
+    /// A volumetric warp of another quality.
+    #[error("a volumetric warp has one quality, fast")]
+    Warped,
+    /// A cast that keeps no layers of emission and absorption.
+    #[error(transparent)]
+    Unlayered(LayersError),
+    /// A picture that is not warped.
+    #[error(transparent)]
+    Warp(#[from] WarpError),
     /// The device.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+}
+
+impl From<LayersError> for PairError {
+    fn from(error: LayersError) -> Self {
+        match error {
+            LayersError::Gpu(error) => Self::Gpu(error),
+            other => Self::Unlayered(other),
+        }
+    }
 }

@@ -12,6 +12,9 @@ pub enum Form {
     Tiles,
     /// Segments are left in layers, one for each slab of depth, and composited when all are cast (SP).
     Layers(LayerFormat),
+    /// The cast keeps layers of emission and absorption, which the derived view's rays pass through: a volumetric warp (VR §5.3.3).
+    /// Only [`Quality::Fast`]; the derived picture has no depths.
+    Volumetric,
 }
 
 /// How segments are held in layers: premultiplied RGBA.

@@ -3,6 +3,7 @@
 mod error;
 mod layers;
 mod method;
+mod novel_view;
 mod pair;
 mod repair;
 mod splat;
@@ -12,6 +13,7 @@ mod tiles;
 pub use error::PairError;
 pub(crate) use layers::LayerPass;
 pub use method::{Form, LayerFormat, PairMethod, Quality};
+pub(crate) use novel_view::NovelViewPass;
 pub use pair::PairReport;
 pub(crate) use repair::{RepairPass, Repairs};
 pub(crate) use splat::Splat;

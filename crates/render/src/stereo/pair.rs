@@ -79,6 +79,9 @@ impl Renderer {
         if method.quality == Quality::Repaired && method.form != Form::Strips {
             return Err(PairError::Unrepaired);
         }
+        if method.form == Form::Volumetric && method.quality != Quality::Fast {
+            return Err(PairError::Warped);
+        }
         let repairs = (method.quality == Quality::Repaired).then(|| self.repairs(gpu, size));
         let frame = self.pair_frame(gpu, prepared, epipolar, repairs, method.quality, &mut targets);
         let Some(frame) = frame else { return Ok(PairReport::default()) };
@@ -86,6 +89,7 @@ impl Renderer {
             Form::Strips => self.strips(gpu, method.quality).render(&frame),
             Form::Tiles => self.tiles(gpu, method.quality).render(&frame),
             Form::Layers(format) => self.layers(gpu, format, method.quality).render(&frame),
+            Form::Volumetric => self.render_novel_view(&frame, &mut targets),
         }?;
         match &frame.repairs {
             None => Ok(report),

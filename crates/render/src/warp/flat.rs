@@ -41,7 +41,8 @@ impl Warps {
         self.format
     }
 
-    /// Encodes `wheatstone_core::warp::quad` into a picture of the wanted view's size and the format.
+    /// Encodes `wheatstone_core::warp::quad`, on a plane through the middle of what may be in the picture, into a picture of the wanted
+    /// view's size and the format.
     ///
     /// # Errors
     /// Views or a picture that do not go together.
@@ -53,8 +54,10 @@ impl Warps {
         wanted: &View,
         into: &wgpu::TextureView,
     ) -> Result<(), WarpError> {
-        let covered = shown.covered(wanted, 0.0..0.0)?;
-        let group = self.bind(gpu, shown, wanted, GridSettings::default())?;
+        let map = PixelMap::between(wanted, &shown.view)?;
+        let plane = map.plane_before_eye(shown.reach.middle());
+        let covered = shown.covered(wanted, plane..plane)?;
+        let group = self.bind(gpu, &map.onto_plane(plane), shown, wanted, GridSettings::default());
         draw(encoder, &self.quad, &group, &covered, into, wanted)
     }
 
@@ -72,20 +75,21 @@ impl Warps {
         into: &wgpu::TextureView,
     ) -> Result<(), WarpError> {
         settings.check()?;
-        let covered = shown.covered(wanted, 0.0..shown.nearest)?;
-        let group = self.bind(gpu, shown, wanted, settings)?;
+        let covered = shown.covered(wanted, 0.0..shown.reach.nearest)?;
+        let map = PixelMap::between(wanted, &shown.view)?;
+        let group = self.bind(gpu, &map, shown, wanted, settings);
         draw(encoder, &self.grid, &group, &covered, into, wanted)
     }
 
     fn bind(
         &self,
         gpu: &Gpu,
+        map: &PixelMap,
         shown: &Shown<'_>,
         wanted: &View,
         settings: GridSettings,
-    ) -> Result<wgpu::BindGroup, WarpError> {
-        let map = PixelMap::between(wanted, &shown.view)?;
-        let uniform = WarpUniform::new(&map, shown, wanted, settings);
+    ) -> wgpu::BindGroup {
+        let uniform = WarpUniform::new(map, shown, wanted, settings);
         let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("warp"),
             contents: bytemuck::bytes_of(&uniform),
@@ -98,7 +102,7 @@ impl Warps {
             wgpu::BindingResource::TextureView(&color),
             wgpu::BindingResource::TextureView(&depth),
         ];
-        Ok(bind(&gpu.device, &self.layout, &resources))
+        bind(&gpu.device, &self.layout, &resources)
     }
 }
 

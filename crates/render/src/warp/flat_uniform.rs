@@ -26,7 +26,7 @@ impl WarpUniform {
         Self {
             matrix: columns(map.matrix.as_mat3()),
             epipole: vector(map.epipole),
-            nearest: shown.nearest as f32,
+            nearest: shown.reach.nearest as f32,
             size: shown.view.size.map(|side| side as f32),
             near_m: wanted.projection.depth_range_m().0 as f32,
             tear_px: settings.tear_px as f32,

@@ -5,28 +5,20 @@ use crate::renderer::Prepared;
 use crate::target::Target;
 use std::ops::Range;
 use wheatstone_core::view::{PixelRect, View};
-use wheatstone_core::warp::{PixelMap, WarpError};
-
-/// Nearest depth that is told from the eye itself, metres.
-const NEAREST_M: f64 = 1e-3;
+use wheatstone_core::warp::{PixelMap, Reach, WarpError};
 
 /// A whole picture, the view that it was cast from, and how near what it shows may be.
 #[derive(Debug, Clone, Copy)]
 pub struct Shown<'a> {
     pub(super) target: &'a Target,
     pub(super) view: View,
-    /// Largest inverse depth, 1/m.
-    pub(super) nearest: f64,
-    /// Least, 1/m.
-    pub(super) furthest: f64,
+    pub(super) reach: Reach,
 }
 
 impl<'a> Shown<'a> {
     /// A picture that was cast from a view with some settings.
     pub fn new(target: &'a Target, view: View, prepared: &Prepared) -> Self {
-        let (nearest_m, furthest_m) = view.depths_m(&prepared.parameters().visible_corners_world());
-        let near_m = view.projection.depth_range_m().0.max(NEAREST_M);
-        Self { target, view, nearest: 1.0 / nearest_m.max(near_m), furthest: 1.0 / furthest_m.max(near_m) }
+        Self { target, view, reach: Reach::of(&view, &prepared.parameters().occupied_corners_world()) }
     }
 
     /// The wanted pixels that may show something of the picture between two inverse depths, 1/m.
@@ -37,6 +29,14 @@ impl<'a> Shown<'a> {
         WarpError::unless_of_size(self.target.size(), &self.view)?;
         let wanted_from_shown = PixelMap::between(&self.view, wanted)?;
         Ok(wanted_from_shown.covered(&self.drawn(), inverse_depths, wanted.size))
+    }
+
+    /// The wanted pixels that may show something of what is in the volume.
+    ///
+    /// # Errors
+    /// As [`Shown::covered`].
+    pub(crate) fn covered_by_volume(&self, wanted: &View) -> Result<PixelRect, WarpError> {
+        self.covered(wanted, self.reach.furthest..self.reach.nearest)
     }
 
     /// The pixels that may not be blank.

@@ -58,7 +58,7 @@ impl VolumetricWarps {
     ) -> Result<(), WarpError> {
         settings.check()?;
         let layers = shown.target.layers.as_ref().ok_or(WarpError::NoLayers)?;
-        let covered = shown.covered(wanted, shown.furthest..shown.nearest)?;
+        let covered = shown.covered_by_volume(wanted)?;
         let map = PixelMap::between(wanted, &shown.view)?;
         let uniform = LayeredWarpUniform::new(&map, &shown.view, wanted, settings);
         let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

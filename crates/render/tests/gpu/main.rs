@@ -4,11 +4,13 @@
 
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "all of this crate is test code")]
 
+mod bounds;
 mod device;
 mod errors;
 mod layers;
 mod leap;
 mod live;
+mod novel_view;
 mod pairs;
 mod parity;
 mod scene;

@@ -10,7 +10,7 @@ use wheatstone_core::scene::Settings;
 use wheatstone_core::stereo::Epipolar;
 use wheatstone_core::view::View;
 use wheatstone_core::volume::VoxelType;
-use wheatstone_render::{GpuVolume, PairMethod, Sources, Target};
+use wheatstone_render::{Form, GpuVolume, PairMethod, Sources, Target};
 
 const SIZE: [u32; 2] = [101, 75];
 
@@ -44,11 +44,13 @@ fn nothing_is_left_of_the_view_before() {
 
             let [left, right] = pair(&view, 0.065, f64::INFINITY);
             let epipolar = Epipolar::new(&left, &right).unwrap();
-            let method = PairMethod::default();
-            renderer.render_pair(gpu, &prepared, &epipolar, method, kept_pair.each_mut()).unwrap();
-            let fresh = render_pair(gpu, renderer, &prepared, &epipolar, method).unwrap();
-            for (kept, fresh) in kept_pair.iter().zip(&fresh) {
-                assert_same(&kept.read(gpu).unwrap(), fresh, case);
+            for form in [Form::Strips, Form::Volumetric] {
+                let method = PairMethod { form, ..PairMethod::default() };
+                renderer.render_pair(gpu, &prepared, &epipolar, method, kept_pair.each_mut()).unwrap();
+                let fresh = render_pair(gpu, renderer, &prepared, &epipolar, method).unwrap();
+                for (kept, fresh) in kept_pair.iter().zip(&fresh) {
+                    assert_same(&kept.read(gpu).unwrap(), fresh, case);
+                }
             }
         }
     });

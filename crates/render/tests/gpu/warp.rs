@@ -9,7 +9,7 @@ use wheatstone_core::metrics::compare;
 use wheatstone_core::scene::Settings;
 use wheatstone_core::view::{Frustum, Projection, View};
 use wheatstone_core::volume::VoxelType;
-use wheatstone_core::warp::{self, GridSettings, WarpError};
+use wheatstone_core::warp::{self, GridSettings, Reach, WarpError};
 use wheatstone_render::warp::{Picture, Shown, Warps};
 use wheatstone_render::{Gpu, GpuVolume, Prepared, Renderer, Sources, Target};
 
@@ -115,7 +115,8 @@ fn quads_are_those_of_the_twin() {
         let mut random = fastrand::Rng::with_seed(3);
         for case in 0..12 {
             let wanted = wanted(&mut random, &scene.view);
-            let twin = warp::quad(&scene.view, &scene.image, &wanted).unwrap();
+            let reach = Reach::of(&scene.view, &scene.prepared.parameters().occupied_corners_world());
+            let twin = warp::quad(&scene.view, &scene.image, &wanted, reach.middle()).unwrap();
             let (largest, _) = differences(&quad(gpu, &scene, &wanted).unwrap(), &twin);
             assert!(largest < 2.0 * ROUNDING, "{case}: {largest}");
         }

@@ -3,10 +3,11 @@
 use super::GpuEngine;
 use crate::backend::Shot;
 use crate::failure::Failure;
+use crate::layering::Layering;
 use std::time::{Duration, Instant};
 use wheatstone_core::image::Image;
 use wheatstone_core::view::View;
-use wheatstone_core::warp::{GridSettings, LayerThresholds, VolumetricSettings, WarpError};
+use wheatstone_core::warp::{GridSettings, VolumetricSettings, WarpError};
 use wheatstone_render::warp::{DepthPass, LayerDepths, Picture, Shown, VolumetricWarps, Warps};
 use wheatstone_render::{LayersError, Prepared, Target};
 
@@ -23,27 +24,29 @@ pub(crate) struct GpuWarping {
 /// What volumetric warps need besides.
 struct Layered {
     prepared: Prepared,
+    settings: VolumetricSettings,
     depth_pass: DepthPass,
     depths: LayerDepths,
     warps: VolumetricWarps,
 }
 
 impl GpuEngine {
-    /// Room for pictures of a shot like a view, with their layers if thresholds are given.
+    /// Room for pictures of a shot like a view, with their layers if volumetric warps are to be made.
     pub(crate) fn warping(
         &mut self,
         shot: Shot,
         view: View,
-        thresholds: Option<&LayerThresholds>,
+        layering: Option<&Layering>,
     ) -> Result<GpuWarping, Failure> {
         let Self { gpu, renderer, scenes, .. } = self;
-        let layered = thresholds.map(|thresholds| {
+        let layered = layering.map(|Layering { thresholds, settings }| {
             let prepared = renderer.with_layers(gpu, &scenes[shot.0].prepared, thresholds);
             Ok::<_, Failure>(Layered {
                 prepared: prepared.map_err(|error| match error {
                     LayersError::Gpu(error) => Failure::Gpu(error),
                     other => Failure::input(other),
                 })?,
+                settings: *settings,
                 depth_pass: DepthPass::new(gpu)?,
                 depths: LayerDepths::new(gpu, view.size)?,
                 warps: VolumetricWarps::new(gpu, Picture::FORMAT)?,
@@ -82,7 +85,7 @@ impl GpuEngine {
         Ok(warping.target.read(&self.gpu)?.image)
     }
 
-    /// The picture on the plane at infinity.
+    /// The picture on a plane.
     pub(crate) fn quad(&self, warping: &GpuWarping, wanted: &View) -> Result<Duration, Failure> {
         let GpuWarping { warps, warped, .. } = warping;
         let shown = self.shown(warping);
@@ -100,12 +103,12 @@ impl GpuEngine {
     /// The picture cast anew through its layers.
     pub(crate) fn volumetric(&self, warping: &GpuWarping, wanted: &View) -> Result<Duration, Failure> {
         let GpuWarping { layered, warped, .. } = warping;
-        let Some(Layered { warps, depths, .. }) = layered else {
+        let Some(Layered { warps, depths, settings, .. }) = layered else {
             return Err(Failure::input(WarpError::NoLayers));
         };
-        let (shown, settings) = (self.shown(warping), VolumetricSettings::default());
+        let shown = self.shown(warping);
         self.timed(|encoder| {
-            warps.encode(&self.gpu, encoder, &shown, depths, wanted, &settings, warped.view())
+            warps.encode(&self.gpu, encoder, &shown, depths, wanted, settings, warped.view())
         })
     }
 

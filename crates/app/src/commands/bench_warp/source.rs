@@ -3,15 +3,14 @@
 use super::warp::WarpName;
 use crate::backend::{Engine, GpuWarping, Shot};
 use crate::failure::Failure;
+use crate::layering::Layering;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::Image;
 use wheatstone_core::reference::{Aids, Caster};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
-use wheatstone_core::warp::{
-    self, EmissionAbsorption, GridSettings, LayerThresholds, VolumetricSettings, WarpError,
-};
+use wheatstone_core::warp::{self, EmissionAbsorption, GridSettings, Reach, WarpError};
 
 /// Casts pictures of one scene, and warps them where they were cast.
 pub(super) struct Camera<'e, 'v> {
@@ -30,7 +29,8 @@ enum Source {
 struct CpuSource {
     view: View,
     image: Image,
-    layered: Option<(Caster, CastParameters)>,
+    parameters: CastParameters,
+    layered: Option<(Caster, Layering)>,
     layers: Option<EmissionAbsorption>,
     warped: Image,
 }
@@ -45,25 +45,24 @@ pub(super) struct CastTimes {
 }
 
 impl<'e, 'v> Camera<'e, 'v> {
-    /// A camera for pictures like a view, for some warps.
+    /// A camera for pictures like a view, with layers for volumetric warps if they are to be made.
     pub(super) fn new(
         engine: &'e mut Engine<'v>,
         shot: Shot,
         (volume, storage, parameters): (&Volume, StorageKind, &CastParameters),
         like: View,
-        warps: &[WarpName],
+        layering: Option<&Layering>,
     ) -> Result<Self, Failure> {
-        let has_layers = warps.contains(&WarpName::Volumetric);
-        let thresholds = has_layers.then(LayerThresholds::default);
         let source = match engine {
-            Engine::Gpu(engine) => Source::Gpu(Box::new(engine.warping(shot, like, thresholds.as_ref())?)),
+            Engine::Gpu(engine) => Source::Gpu(Box::new(engine.warping(shot, like, layering)?)),
             Engine::Cpu(_) => {
-                let caster = || (Caster::with_storage(volume, storage), parameters.clone());
+                let caster = || Caster::with_storage(volume, storage);
                 let blank = Image::transparent(like.size[0], like.size[1]);
                 Source::Cpu(Box::new(CpuSource {
                     view: like,
                     image: blank.clone(),
-                    layered: has_layers.then(caster),
+                    parameters: parameters.clone(),
+                    layered: layering.map(|layering| (caster(), layering.clone())),
                     layers: None,
                     warped: blank,
                 }))
@@ -83,9 +82,13 @@ impl<'e, 'v> Camera<'e, 'v> {
             (engine, Source::Cpu(source)) => {
                 let start = Instant::now();
                 engine.cast(self.shot, &[view])?;
-                let thresholds = LayerThresholds::default();
-                let layers = source.layered.as_ref().map(|(caster, parameters)| {
-                    caster.cast_emission_absorption(parameters, &Aids::default(), &view, &thresholds)
+                let layers = source.layered.as_ref().map(|(caster, layering)| {
+                    caster.cast_emission_absorption(
+                        &source.parameters,
+                        &Aids::default(),
+                        &view,
+                        &layering.thresholds,
+                    )
                 });
                 source.layers = layers.transpose().map_err(Failure::input)?.map(|(_, layers)| layers);
                 let cast = start.elapsed();
@@ -135,15 +138,20 @@ impl<'e, 'v> Camera<'e, 'v> {
 
 impl CpuSource {
     fn warp(&self, warp: WarpName, wanted: &View) -> Result<Image, WarpError> {
-        let Self { view, image, layers, .. } = self;
-        match (warp, layers) {
-            (WarpName::None, _) => Ok(image.clone()),
-            (WarpName::Quad, _) => warp::quad(view, image, wanted),
-            (WarpName::Grid, _) => warp::grid(view, image, wanted, GridSettings::default()),
-            (WarpName::Volumetric, None) => Err(WarpError::NoLayers),
-            (WarpName::Volumetric, Some(layers)) => {
-                warp::volumetric(layers, view, wanted, &VolumetricSettings::default())
+        let Self { view, image, parameters, layers, layered, .. } = self;
+        match warp {
+            WarpName::None => Ok(image.clone()),
+            WarpName::Quad => {
+                let reach = Reach::of(view, &parameters.occupied_corners_world());
+                warp::quad(view, image, wanted, reach.middle())
             }
+            WarpName::Grid => warp::grid(view, image, wanted, GridSettings::default()),
+            WarpName::Volumetric => match (layers, layered) {
+                (Some(layers), Some((_, layering))) => {
+                    warp::volumetric(layers, view, wanted, &layering.settings)
+                }
+                _ => Err(WarpError::NoLayers),
+            },
         }
     }
 }

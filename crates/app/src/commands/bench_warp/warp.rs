@@ -7,7 +7,7 @@ use clap::ValueEnum;
 pub(super) enum WarpName {
     /// As it is.
     None,
-    /// On the plane at infinity: turns are made up for.
+    /// On a plane through the middle of the volume: turns are made up for, and the parallax of that depth.
     Quad,
     /// Each pixel at the depth of its first hit.
     Grid,
