@@ -102,6 +102,11 @@ impl Prepared {
     pub fn parameters(&self) -> &CastParameters {
         &self.parameters
     }
+
+    /// Whether casts keep layers of emission and absorption beside the picture.
+    pub fn keeps_layers(&self) -> bool {
+        self.variant.keeps_layers()
+    }
 }
 
 impl Renderer {

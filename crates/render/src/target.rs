@@ -4,8 +4,10 @@ use crate::gpu::{Gpu, GpuError};
 use crate::pacer::BAND_ROWS;
 use crate::readback::read_texture;
 use crate::squares::Squares;
+use std::ops::Range;
 use wheatstone_core::image::Image;
 use wheatstone_core::reference::{Cast, Reads};
+use wheatstone_core::view::PixelRect;
 
 /// Bytes of a pixel of either texture.
 const PIXEL_BYTES: u32 = 16;
@@ -99,6 +101,15 @@ impl Target {
         if let Some(layers) = &self.layers {
             blank_layers(encoder, zeros, layers, drawn);
         }
+    }
+
+    /// The pixels that may not be blank.
+    pub(crate) fn drawn_pixels(&self) -> PixelRect {
+        let pixels = |squares: &Range<u32>, side: u32| {
+            squares.start * BAND_ROWS..side.min(squares.end.saturating_mul(BAND_ROWS))
+        };
+        let [width, height] = self.size;
+        PixelRect { columns: pixels(&self.drawn.columns, width), rows: pixels(&self.drawn.bands, height) }
     }
 
     /// Width and height in pixels.

@@ -1,7 +1,7 @@
 //! The volume on the device, and the pictures that are cast of it under a budget.
 
 use super::loading::Arrived;
-use super::state::{Clip, EyeMethod, Look, State, Transfer};
+use super::state::{Clip, EyeMethod, Look, State, Transfer, WarpName};
 use crate::failure::Failure;
 use crate::look::ModeName;
 use std::sync::Arc;
@@ -12,9 +12,10 @@ use wheatstone_core::scene::Placement;
 use wheatstone_core::skip::SkipPlan;
 use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_core::volume::Grid;
+use wheatstone_core::warp::LayerThresholds;
 use wheatstone_render::live::{Activity, Front, LiveError, LiveView};
 use wheatstone_render::skip::SkipBuilder;
-use wheatstone_render::{Gpu, GpuError, GpuVolume, Leap, Prepared, Renderer, Sources};
+use wheatstone_render::{Gpu, GpuError, GpuVolume, LayersError, Leap, Prepared, Renderer, Sources};
 
 /// Refreshes that a picture in motion takes at most.
 const REFRESHES_IN_MOTION: f64 = 4.0;
@@ -47,13 +48,19 @@ struct Settings {
     look: Look,
     transfer: Transfer,
     clip: Clip,
+    keeps_layers: bool,
 }
 
 impl Settings {
     fn of(state: &State) -> Self {
         // Background and handles are drawn over what is cast.
         let look = Look { background: [0.0; 3], ..state.look };
-        Self { look, transfer: state.transfer.clone(), clip: Clip { has_handles: false, ..state.clip } }
+        Self {
+            look,
+            transfer: state.transfer.clone(),
+            clip: Clip { has_handles: false, ..state.clip },
+            keeps_layers: keeps_layers(state),
+        }
     }
 }
 
@@ -99,7 +106,8 @@ impl Casting {
         if settings != scene.settings {
             let Scene { grid, volume, skipping, .. } = &mut *scene;
             let prepared = prepare(gpu, &mut self.renderer, grid, volume, skipping.as_mut(), state)?;
-            if settings.look.cost() == scene.settings.look.cost() {
+            let cost = |settings: &Settings| (settings.look.cost(), settings.keeps_layers);
+            if cost(&settings) == cost(&scene.settings) {
                 scene.live.supersede(prepared);
             } else {
                 scene.live.replace(prepared);
@@ -169,6 +177,11 @@ fn placement(grid: &Grid, look: &Look) -> Placement {
     Placement::of_grid(grid, world_from_patient(grid, look.up.direction()))
 }
 
+/// Whether volumetric warps are wanted of what has layers.
+fn keeps_layers(state: &State) -> bool {
+    state.pace.warp == WarpName::Volumetric && state.look.mode == ModeName::Dvr
+}
+
 fn prepare(
     gpu: &Gpu,
     renderer: &mut Renderer,
@@ -192,7 +205,15 @@ fn prepare(
         }
     };
     let sources = Sources { leap, ..Sources::volume(volume) };
-    Ok(Arc::new(renderer.prepare(gpu, &sources, parameters)?))
+    let prepared = renderer.prepare(gpu, &sources, parameters)?;
+    if !keeps_layers(state) {
+        return Ok(Arc::new(prepared));
+    }
+    match renderer.with_layers(gpu, &prepared, &LayerThresholds::default()) {
+        Ok(layered) => Ok(Arc::new(layered)),
+        Err(LayersError::Gpu(error)) => Err(Failure::Gpu(error)),
+        Err(other) => Err(Failure::Internal(other.into())),
+    }
 }
 
 /// A device that fails is the device's failure.

@@ -1,5 +1,6 @@
 //! What each eye is shown: the newest whole picture, as it looks from where the eye is now.
 
+use super::novel_views::NovelViews;
 use super::state::WarpName;
 use crate::failure::Failure;
 use glam::DVec3;
@@ -16,12 +17,17 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Most steps of the search for surfaces that software Vulkan has time for in a refresh: 3 to 5 ns each on two cores.
 const MOST_STEPS_ON_CPU: f64 = 4e6;
 
+/// How many such steps a step through layers takes the time of.
+const STEPS_OF_LAYERS: f64 = 8.0;
+
 /// Nearest depth that counts for how far surfaces move, metres.
 const NEAREST_M: f64 = 0.05;
 
 /// Warps to the eyes of a rig.
 pub(crate) struct Eyes {
     warps: Warps,
+    /// Made when first asked for.
+    novel_views: Option<NovelViews>,
     pictures: Vec<wgpu::TextureView>,
     shown: Option<Wanted>,
 }
@@ -42,11 +48,12 @@ enum Way {
     AsItIs,
     Quad(Quality),
     Grid(Quality),
+    Volumetric(Quality),
 }
 
 impl Way {
-    /// The way that is asked for, or what of it a refresh has time for: the grid is searched pixel by pixel along as many
-    /// pixels as surfaces may have moved.
+    /// The way that is asked for, or what of it a refresh has time for: the grid is searched, and layers are passed, pixel by pixel
+    /// along as many pixels as surfaces may have moved.
     fn choose(gpu: &Gpu, front: &Front, shown: &View, wanted: &View, warp: WarpName) -> Self {
         let quality = front.quality();
         let moved_m = (eye_m(shown) - eye_m(wanted)).length();
@@ -54,20 +61,23 @@ impl Way {
             WarpName::None => Self::AsItIs,
             WarpName::Quad => Self::Quad(quality),
             // From where it was cast a picture is the same by any warp.
-            WarpName::Grid if moved_m == 0.0 => Self::Quad(quality),
-            WarpName::Grid => {
+            WarpName::Grid | WarpName::Volumetric if moved_m == 0.0 => Self::Quad(quality),
+            WarpName::Grid | WarpName::Volumetric => {
                 let corners = front.prepared().parameters().occupied_corners_world();
                 let most_steps =
                     if gpu.description().is_software { MOST_STEPS_ON_CPU } else { f64::INFINITY };
+                let (way, cost): (fn(Quality) -> Self, f64) =
+                    if warp == WarpName::Volumetric && front.prepared().keeps_layers() {
+                        (Self::Volumetric, STEPS_OF_LAYERS)
+                    } else {
+                        (Self::Grid, 1.0)
+                    };
                 let columns = columns_moved(shown, moved_m, &corners);
                 let steps = |quality: &Quality| {
-                    quality.size(wanted.size).map(f64::from).iter().product::<f64>() * columns.max(1.0)
+                    quality.size(wanted.size).map(f64::from).iter().product::<f64>() * columns.max(1.0) * cost
                 };
                 let coarser = (quality.level()..=Quality::COARSEST.level()).map(Quality::at);
-                coarser
-                    .into_iter()
-                    .find(|quality| steps(quality) <= most_steps)
-                    .map_or(Self::AsItIs, Self::Grid)
+                coarser.into_iter().find(|quality| steps(quality) <= most_steps).map_or(Self::AsItIs, way)
             }
         }
     }
@@ -90,7 +100,8 @@ fn columns_moved(shown: &View, moved_m: f64, corners: &[DVec3]) -> f64 {
 
 impl Eyes {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, Failure> {
-        Ok(Self { warps: Warps::new(gpu, FORMAT)?, pictures: Vec::new(), shown: None })
+        let warps = Warps::new(gpu, FORMAT)?;
+        Ok(Self { warps, novel_views: None, pictures: Vec::new(), shown: None })
     }
 
     /// The pictures of the left and the right eye (the same twice where there is one), as finely as the front picture is
@@ -116,12 +127,15 @@ impl Eyes {
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.pictures.truncate(wanted.views.len());
         for (eye, &view) in wanted.views.iter().enumerate() {
-            let (target, cast_from) = sources[eye.min(last)];
+            let source = eye.min(last);
+            let (target, cast_from) = sources[source];
             let shown = Shown::new(target, cast_from, front.prepared());
             let way = Way::choose(gpu, front, &cast_from, &view, wanted.warp);
             let view = match way {
                 Way::AsItIs => cast_from,
-                Way::Quad(quality) | Way::Grid(quality) => View { size: quality.size(view.size), ..view },
+                Way::Quad(quality) | Way::Grid(quality) | Way::Volumetric(quality) => {
+                    View { size: quality.size(view.size), ..view }
+                }
             };
             let into = self.picture(gpu, eye, view.size)?;
             match way {
@@ -129,11 +143,23 @@ impl Eyes {
                 Way::Grid(_) => {
                     self.warps.grid(gpu, &mut encoder, &shown, &view, GridSettings::default(), &into)
                 }
+                Way::Volumetric(_) => {
+                    let novel_views = self.novel_views(gpu)?;
+                    novel_views.follow(gpu, &mut encoder, front, wanted.picture)?;
+                    novel_views.encode(gpu, &mut encoder, (source, &shown), &view, &into)
+                }
             }
             .map_err(|error: WarpError| Failure::Internal(error.into()))?;
         }
         gpu.queue().submit([encoder.finish()]);
         Ok(gpu.check()?)
+    }
+
+    fn novel_views(&mut self, gpu: &Gpu) -> Result<&mut NovelViews, Failure> {
+        match self.novel_views.take() {
+            Some(novel_views) => Ok(self.novel_views.insert(novel_views)),
+            None => Ok(self.novel_views.insert(NovelViews::new(gpu, FORMAT)?)),
+        }
     }
 
     /// Room for an eye's picture: that of the last one if it has the size.

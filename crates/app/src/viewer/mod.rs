@@ -17,6 +17,7 @@ mod latency;
 mod loading;
 mod memory;
 mod notes;
+mod novel_views;
 mod report;
 mod screen;
 mod script;

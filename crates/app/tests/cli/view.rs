@@ -11,6 +11,8 @@ const SESSION: &str = r#"
 {"wait_for": "rest"}
 {"do": {"picture": "first.png"}}
 {"wait_for": "rest"}
+{"do": {"warp": "volumetric"}}
+{"wait_for": "rest"}
 {"drag": {"from": [60, 150], "to": [200, 180], "ms": 150}}
 {"wait_for": "rest"}
 {"do": {"picture": "orbited.png"}}

@@ -10,7 +10,10 @@ use wheatstone_core::warp::{GridSettings, WarpError, grid, quad};
 type Warp = fn(&View, &Image, &View) -> Result<Image, WarpError>;
 
 /// Every warp at its default.
-const WARPS: [Warp; 2] = [quad, |shown, image, wanted| grid(shown, image, wanted, GridSettings::default())];
+const WARPS: [Warp; 2] = [
+    |shown, image, wanted| quad(shown, image, wanted, 0.7),
+    |shown, image, wanted| grid(shown, image, wanted, GridSettings::default()),
+];
 
 fn blank() -> Image {
     Image::transparent(SIZE[0], SIZE[1])

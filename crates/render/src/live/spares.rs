@@ -2,6 +2,7 @@
 
 use crate::buffers::storage;
 use crate::gpu::{Gpu, GpuError};
+use crate::renderer::Prepared;
 use crate::target::Target;
 use crate::tile_pass::TileList;
 use wgpu::BufferUsages;
@@ -19,13 +20,21 @@ pub(super) struct Spares {
 }
 
 impl Spares {
-    /// A target of a size.
+    /// A target of a size, for what is cast with some settings.
     ///
     /// # Errors
     /// As [`Target::new`].
-    pub(super) fn target(&mut self, gpu: &Gpu, size: [u32; 2]) -> Result<Target, GpuError> {
-        match self.targets.iter().position(|target| target.size() == size) {
+    pub(super) fn target(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        size: [u32; 2],
+    ) -> Result<Target, GpuError> {
+        let is_like =
+            |target: &Target| target.size() == size && target.layers.is_some() == prepared.keeps_layers();
+        match self.targets.iter().position(is_like) {
             Some(at) => Ok(self.targets.remove(at)),
+            None if prepared.keeps_layers() => Target::with_layers(gpu, size),
             None => Target::new(gpu, size),
         }
     }

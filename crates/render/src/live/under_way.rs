@@ -59,7 +59,7 @@ impl UnderWay {
         let states =
             spares.states(gpu, u64::from(width) * u64::from(cell_rows) * prepared.variant.state_bytes());
         let begin = |view: View| {
-            let mut target = spares.target(gpu, view.size)?;
+            let mut target = spares.target(gpu, &prepared, view.size)?;
             let list =
                 prepared.lists_tiles.then(|| renderer.tile_pass.list(&gpu.device, view.size, spares.list()));
             let tiles = list.as_ref().map_or(&renderer.unused[1], |list| &list.tiles);

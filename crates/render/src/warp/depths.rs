@@ -4,6 +4,8 @@ use crate::gpu::{Gpu, GpuError};
 use crate::kernel::Kernel;
 use crate::pipeline::KernelFiles;
 use crate::target::{Target, target_texture};
+use wgpu::util::DeviceExt as _;
+use wheatstone_core::view::PixelRect;
 use wheatstone_core::warp::WarpError;
 
 /// Side of a tile, pixels: `SIDE` of `warp/depth_tiles.wgsl`.
@@ -58,6 +60,11 @@ impl LayerDepths {
         Ok(depths)
     }
 
+    /// The size of the pictures.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// Depths from and to of each tile, and of all.
     pub(super) fn views(&self) -> [wgpu::TextureView; 2] {
         [view(&self.tiles), view(&self.all)]
@@ -92,15 +99,21 @@ impl DepthPass {
         if target.size() != depths.size {
             return Err(WarpError::Mismatch { image: target.size(), view: depths.size });
         }
-        let steps = [
-            (&self.tiles, array_view(layers), &depths.tiles),
-            (&self.columns, view(&depths.tiles), &depths.columns),
-            (&self.row, view(&depths.columns), &depths.all),
+        let PixelRect { columns, rows } = target.drawn_pixels();
+        let drawn = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("drawn pixels"),
+            contents: bytemuck::cast_slice(&[columns.start, rows.start, columns.end, rows.end]),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let steps: [(_, _, _, &[_]); 3] = [
+            (&self.tiles, array_view(layers), &depths.tiles, &[drawn.as_entire_binding()]),
+            (&self.columns, view(&depths.tiles), &depths.columns, &[]),
+            (&self.row, view(&depths.columns), &depths.all, &[]),
         ];
-        for (kernel, from, into) in steps {
+        for (kernel, from, into, uniforms) in steps {
             let into_view = view(into);
-            let resources = [&from, &into_view].map(wgpu::BindingResource::TextureView);
-            let group = kernel.bind(&gpu.device, &resources);
+            let textures = [&from, &into_view].map(wgpu::BindingResource::TextureView);
+            let group = kernel.bind(&gpu.device, &[&textures[..], uniforms].concat());
             kernel.dispatch(encoder, &group, [into.width(), into.height(), 1]);
         }
         Ok(())

@@ -1,6 +1,5 @@
 //! The picture that is warped.
 
-use crate::pacer::BAND_ROWS;
 use crate::renderer::Prepared;
 use crate::target::Target;
 use std::ops::Range;
@@ -28,7 +27,7 @@ impl<'a> Shown<'a> {
     pub(super) fn covered(&self, wanted: &View, inverse_depths: Range<f64>) -> Result<PixelRect, WarpError> {
         WarpError::unless_of_size(self.target.size(), &self.view)?;
         let wanted_from_shown = PixelMap::between(&self.view, wanted)?;
-        Ok(wanted_from_shown.covered(&self.drawn(), inverse_depths, wanted.size))
+        Ok(wanted_from_shown.covered(&self.target.drawn_pixels(), inverse_depths, wanted.size))
     }
 
     /// The wanted pixels that may show something of what is in the volume.
@@ -37,15 +36,5 @@ impl<'a> Shown<'a> {
     /// As [`Shown::covered`].
     pub(crate) fn covered_by_volume(&self, wanted: &View) -> Result<PixelRect, WarpError> {
         self.covered(wanted, self.reach.furthest..self.reach.nearest)
-    }
-
-    /// The pixels that may not be blank.
-    fn drawn(&self) -> PixelRect {
-        let pixels = |squares: &Range<u32>, side: u32| {
-            squares.start * BAND_ROWS..side.min(squares.end.saturating_mul(BAND_ROWS))
-        };
-        let [width, height] = self.target.size();
-        let drawn = &self.target.drawn;
-        PixelRect { columns: pixels(&drawn.columns, width), rows: pixels(&drawn.bands, height) }
     }
 }

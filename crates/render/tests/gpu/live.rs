@@ -10,8 +10,9 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Mode, Settings, Shading};
 use wheatstone_core::view::{Rig, View};
 use wheatstone_core::volume::VoxelType;
+use wheatstone_core::warp::LayerThresholds;
 use wheatstone_render::live::{Activity, LiveError, LiveView};
-use wheatstone_render::{AdapterDescription, Gpu, GpuError, GpuVolume, Prepared, Renderer, Sources};
+use wheatstone_render::{AdapterDescription, Gpu, GpuError, GpuVolume, Prepared, Renderer, Sources, Target};
 
 /// Too little for a cell: every refresh casts as little as possible.
 const NOTHING: Duration = Duration::from_nanos(1);
@@ -28,6 +29,11 @@ fn prepared(gpu: &Gpu, renderer: &mut Renderer, settings: impl Fn(&mut Settings)
     settings(&mut set);
     let parameters = CastParameters::new(&set, &placement(&volume));
     Arc::new(renderer.prepare(gpu, &Sources::volume(&uploaded), parameters).unwrap())
+}
+
+fn with_layers(gpu: &Gpu, renderer: &mut Renderer) -> Arc<Prepared> {
+    let plain = prepared(gpu, renderer, |_| {});
+    Arc::new(renderer.with_layers(gpu, &plain, &LayerThresholds::default()).unwrap())
 }
 
 fn view(size: [u32; 2], eye: DVec3) -> View {
@@ -55,6 +61,14 @@ fn assert_whole(gpu: &Gpu, renderer: &mut Renderer, live: &LiveView) {
         let expected = renderer.render_to_host(gpu, front.prepared(), &[view]).unwrap().remove(0);
         assert_eq!(found.image, expected.image);
         assert_eq!(found.reads, expected.reads);
+        assert_eq!(target.read_layers(gpu, &view).unwrap().is_some(), front.prepared().keeps_layers());
+        if front.prepared().keeps_layers() {
+            let mut at_once = [Target::with_layers(gpu, view.size).unwrap()];
+            renderer.render(gpu, front.prepared(), &[view], &mut at_once).unwrap();
+            let [found, expected] =
+                [target, &at_once[0]].map(|target| target.read_layers(gpu, &view).unwrap());
+            assert!(found == expected, "layers");
+        }
     }
 }
 
@@ -94,6 +108,7 @@ fn whatever_changes_the_front_picture_is_whole_and_the_last_one_is_what_is_wante
             prepared(gpu, renderer, |set| set.shading = Shading::Shadow),
             prepared(gpu, renderer, |set| set.preintegrated = true),
             prepared(gpu, renderer, |set| set.mode = Mode::MinIp),
+            with_layers(gpu, renderer),
         ];
         let mut random = fastrand::Rng::with_seed(5);
         let eye = |random: &mut fastrand::Rng| DVec3::new(2.0 * random.f64() - 1.0, random.f64(), 1.2);

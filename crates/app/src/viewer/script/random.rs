@@ -82,7 +82,7 @@ fn command(rng: &mut Rng) -> Command {
         })),
         18 => Edit::Arrangement(Arrangement::ALL[rng.usize(0..3)]),
         19 => Edit::EyeMethod(EyeMethod::ALL[rng.usize(0..2)]),
-        20 => Edit::Warp(WarpName::ALL[rng.usize(0..3)]),
+        20 => Edit::Warp(WarpName::ALL[rng.usize(0..WarpName::ALL.len())]),
         21 => return Command::Preset(["auto", "mri-brain-t1", "viridis"][rng.usize(0..3)].to_owned()),
         22 => return Command::Reload,
         _ => return Command::OpenShipped,

@@ -19,20 +19,23 @@ pub(crate) struct Pace {
 pub(crate) enum WarpName {
     /// As it is.
     None,
-    /// As if it were infinitely far away.
+    /// As if it were on a plane through the middle of the volume.
     Quad,
     /// By the depth of its first hits.
     Grid,
+    /// Through layers of emission and absorption, which are cast with it; other modes than composites by the grid.
+    Volumetric,
 }
 
 impl WarpName {
-    pub(crate) const ALL: [Self; 3] = [Self::None, Self::Quad, Self::Grid];
+    pub(crate) const ALL: [Self; 4] = [Self::None, Self::Quad, Self::Grid, Self::Volumetric];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::None => "none",
             Self::Quad => "quad",
             Self::Grid => "grid",
+            Self::Volumetric => "volumetric",
         }
     }
 }
