@@ -357,9 +357,7 @@ impl Renderer {
     /// Room for the repairs of a picture: that of the last one if it is large enough.
     pub(crate) fn repairs(&mut self, gpu: &Gpu, size: [u32; 2]) -> Repairs {
         let kept = self.repairs.take().filter(|repairs| repairs.has_room(size));
-        let repairs = kept.unwrap_or_else(|| Repairs::new(gpu, size));
-        repairs.clear(&gpu.queue);
-        self.repairs.insert(repairs).clone()
+        self.repairs.insert(kept.unwrap_or_else(|| Repairs::new(gpu, size))).clone()
     }
 
     /// The listing of repairs, made when first asked for.

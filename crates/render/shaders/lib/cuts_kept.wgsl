@@ -11,7 +11,7 @@ import package::lib::view::{view};
 // Opacity in front of what is missing from which on it is not missed: less than a tenth of the light.
 const HIDING_ALPHA: f32 = 0.9;
 
-// A bit for each derived column of a row of a strip that a ray would have gone on to, with less than that in front.
+// A bit for each derived column of a row of a strip that a ray would have gone on to, with less than that in front by then.
 @group(3) @binding(4) var<storage, read_write> cuts: array<u32>;
 
 const CUTS_PER_WORD: u32 = 32u;
@@ -30,8 +30,8 @@ fn empty_cut(row: u32, strip: u32, column: i32) {
     cuts[word_at(row, strip, column)] = 0u;
 }
 
-fn is_cut_at(row: u32, strip: u32, column: i32, alpha_in_front: f32) -> bool {
-    return (cuts[word_at(row, strip, column)] & bit_of(strip, column)) != 0u && alpha_in_front < HIDING_ALPHA;
+fn is_cut_at(row: u32, strip: u32, column: i32) -> bool {
+    return (cuts[word_at(row, strip, column)] & bit_of(strip, column)) != 0u;
 }
 
 // Notes some derived columns that are still open.

@@ -6,7 +6,7 @@ import package::lib::segmented_ray::{SegmentedRay};
 
 fn empty_cut(row: u32, strip: u32, column: i32) {}
 
-fn is_cut_at(row: u32, strip: u32, column: i32, alpha_in_front: f32) -> bool {
+fn is_cut_at(row: u32, strip: u32, column: i32) -> bool {
     return false;
 }
 

@@ -28,7 +28,7 @@ fn merged_at(at_pixel: vec2u) -> Merged {
         let at = partial_at(at_pixel.y, u32(strip), column);
         let partial = partials[at];
         let partial_depth_m = partial_depths_m[at];
-        is_cut |= is_cut_at(at_pixel.y, u32(strip), column, joint.a);
+        is_cut |= is_cut_at(at_pixel.y, u32(strip), column);
         joint = join(joint, partial);
         if depth_m == NOTHING_HIT && joint.a >= FIRST_HIT_ALPHA {
             depth_m = partial_depth_m;

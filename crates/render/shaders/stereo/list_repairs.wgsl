@@ -12,11 +12,11 @@ const DSSIM_PER_RATING: f32 = 0.0012;
 // What tiles that are not blank may be off by in the mean.
 const LARGEST_DSSIM: f32 = 0.008;
 
-// Expected DSSIM of a tile whose colours bend from column to column by as much as the contrast around it, and the power by
-// which it grows with that (fitted, `docs/benchmarks/`). Samples between columns are shared by both: what changes evenly
-// is right. DSSIM, too, is an error's mean square in parts of the variance around.
-const DSSIM_OF_CONTRAST: f32 = 0.045;
-const DSSIM_POWER: f32 = 0.6;
+// Expected DSSIM of a tile whose colours' second differences along rows have a mean square as large as the contrast around
+// it; it grows with the root of that (fitted, `docs/benchmarks/`). Samples between columns are shared by both: what changes evenly
+// is right. DSSIM is an error's mean square in parts of the variance around; in parts of the contrast it counts what tiles do
+// to the windows beside them, too.
+const DSSIM_OF_CONTRAST: f32 = 0.1;
 
 // Half of `(K2 L)^2` of SSIM (Wang et al. 2004).
 const LEAST_VARIANCE: f32 = 0.5 * 0.03 * 0.03;
@@ -67,7 +67,7 @@ fn rating_of(place: Place) -> u32 {
     }
     let means = sums / f32(9u * TILE.x * TILE.y);
     let variance = max(means.y - means.x * means.x, 0.0);
-    let dssim = DSSIM_OF_CONTRAST * pow(measure.z / (variance + LEAST_VARIANCE), DSSIM_POWER);
+    let dssim = DSSIM_OF_CONTRAST * sqrt(measure.z * inverseSqrt(variance + LEAST_VARIANCE));
     let rating = min(u32(dssim / DSSIM_PER_RATING), RATINGS - 2u);
     let holds = u32(measure.w);
     return select(select(RATINGS, rating, holds == 1u), RATINGS - 1u, holds == 2u);

@@ -6,10 +6,13 @@ import package::lib::view::{view};
 
 // Composites what the strips have left for each derived pixel, and measures the tiles: what `list_repairs` goes by.
 
-// What is in a tile: nothing; something; something of which rays have left out what it needs.
+// What is in a tile: nothing; something; something with a gap.
 const BLANK_TILE: f32 = 0.0;
 const DERIVED_TILE: f32 = 1.0;
 const CUT_TILE: f32 = 2.0;
+
+// Opacity of a derived pixel below which it is a gap if rays have left out what it needs: it lets half of the light through.
+const GAP_ALPHA: f32 = 0.5;
 
 // Of each tile: the sums of its pixels' grey levels and of their squares, the mean square of how much changes from column to
 // column change, and what is in it.
@@ -43,7 +46,7 @@ fn merge_and_measure(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
             let bend = before.pixel.color.rgb + after.pixel.color.rgb - 2.0 * here.pixel.color.rgb;
             bends += dot(bend, bend) / 3.0;
             alpha += here.pixel.color.a;
-            is_cut |= here.is_cut;
+            is_cut |= here.is_cut && here.pixel.color.a < GAP_ALPHA;
             before = here;
             here = after;
         }

@@ -14,7 +14,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Mode;
 use wheatstone_core::stereo::{Epipolar, SlabRange, Slabs};
 
-/// What a pair has taken.
+/// What a pair has taken. What is sent off together is told apart by when the host learns of its ends, which may be late.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PairReport {
     /// Bytes that this pair needs on the device besides both pictures.
@@ -85,15 +85,13 @@ impl Renderer {
         let repairs = (method.quality == Quality::Repaired).then(|| self.repairs(gpu, size));
         let frame = self.pair_frame(gpu, prepared, epipolar, repairs, method.quality, &mut targets);
         let Some(frame) = frame else { return Ok(PairReport::default()) };
-        let report = match method.form {
-            Form::Strips => self.strips(gpu, method.quality).render(&frame),
+        let repairs = frame.repairs.as_ref();
+        let repair = repairs.map(|repairs| self.ready_repair(&frame, repairs, targets[1])).transpose()?;
+        match method.form {
+            Form::Strips => self.strips(gpu, method.quality).render(&frame, repair.as_ref()),
             Form::Tiles => self.tiles(gpu, method.quality).render(&frame),
             Form::Layers(format) => self.layers(gpu, format, method.quality).render(&frame),
             Form::Volumetric => self.render_novel_view(&frame, &mut targets),
-        }?;
-        match &frame.repairs {
-            None => Ok(report),
-            Some(repairs) => self.repair(&frame, repairs, targets[1], report),
         }
     }
 
@@ -183,17 +181,17 @@ impl PairFrame<'_> {
     }
 
     /// Encodes commands and sends them off.
-    pub(crate) fn send(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) {
+    pub(crate) fn send(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> wgpu::SubmissionIndex {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encode(&mut encoder);
-        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.queue.submit([encoder.finish()])
     }
 
     /// Encodes commands, sends them off, waits until they are done and returns the time that they took.
     pub(crate) fn run(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<Duration, GpuError> {
         let start = Instant::now();
-        self.send(encode);
-        self.gpu.wait()?;
+        let sent = self.send(encode);
+        self.gpu.wait_for(sent)?;
         Ok(start.elapsed())
     }
 }

@@ -1,7 +1,7 @@
 //! Repair: tiles of the derived picture that are cast directly.
 
 use super::PairError;
-use super::pair::{Eye, PairFrame, PairReport};
+use super::pair::{Eye, PairFrame};
 use super::strips::merged_workgroups;
 use crate::buffers::storage;
 use crate::cast_pass::{self, Workgroups};
@@ -15,7 +15,6 @@ use crate::target::Target;
 use crate::tile_pass::{GROUPS_PER_ROW, TILE, tiles_of};
 use crate::uniforms::{PairUniform, ViewUniform};
 use bytemuck::Zeroable as _;
-use std::time::Duration;
 
 /// Bytes of a `RepairPlan`.
 pub(crate) const PLAN_BYTES: u64 = 4 * (4 + RATINGS as u64);
@@ -78,7 +77,7 @@ impl Repairs {
     }
 
     /// Forgets the last picture.
-    pub(crate) fn clear(&self, queue: &wgpu::Queue) {
+    fn clear(&self, queue: &wgpu::Queue) {
         let mut plan = [0; 4 + RATINGS];
         [plan[0], plan[2]] = [GROUPS_PER_ROW, 1];
         queue.write_buffer(&self.plan, 0, bytemuck::cast_slice(&plan));
@@ -97,7 +96,7 @@ fn tile_bytes(size: [u32; 2]) -> u64 {
 }
 
 /// The pass that lists what is to be cast.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct RepairPass {
     own_layout: wgpu::BindGroupLayout,
     count: wgpu::ComputePipeline,
@@ -141,45 +140,68 @@ impl RepairPass {
     }
 }
 
+/// A repair of a derived picture, ready to be sent off.
+#[derive(Debug)]
+pub(crate) struct Repair {
+    /// Bytes on the device.
+    pub(crate) bytes: u64,
+    repairs: Repairs,
+    pass: RepairPass,
+    target: wgpu::BindGroup,
+    pipeline: wgpu::ComputePipeline,
+    /// Samples of a ray in one dispatch.
+    sample_limit: u32,
+}
+
+impl Repair {
+    /// Sends off the listing of what is to be cast of the derived picture, and its cast. Returns the last submission.
+    pub(crate) fn send(&self, frame: &PairFrame<'_>) -> wgpu::SubmissionIndex {
+        let PairFrame { gpu, prepared, epipolar, .. } = frame;
+        self.repairs.clear(&gpu.queue);
+        let mut sent = frame.send(|encoder| self.pass.dispatch(encoder, frame, &self.repairs));
+        let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &self.target };
+        let mut view = ViewUniform::new(&prepared.parameters, epipolar.derived());
+        view.sample_limit = self.sample_limit;
+        while view.first_sample < prepared.parameters.most_samples_per_ray() {
+            gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&view));
+            let workgroups = Workgroups::Listed(&self.repairs.plan);
+            sent = frame.send(|encoder| {
+                cast_pass::dispatch(encoder, &self.pipeline, &bindings, workgroups, Stamps::NONE);
+            });
+            view.first_sample = view.first_sample.saturating_add(self.sample_limit);
+        }
+        sent
+    }
+}
+
 impl Renderer {
-    /// Casts what is to be cast of the derived picture, waits until that is done and adds what it takes to the pair's report.
-    pub(super) fn repair(
+    /// Makes ready to cast what is not to be derived of a picture.
+    pub(super) fn ready_repair(
         &mut self,
         frame: &PairFrame<'_>,
         repairs: &Repairs,
         derived: &Target,
-        pair: PairReport,
-    ) -> Result<PairReport, PairError> {
-        let PairFrame { gpu, prepared, epipolar, .. } = frame;
+    ) -> Result<Repair, PairError> {
+        let PairFrame { gpu, prepared, .. } = frame;
         let [width, height] = frame.size();
         let most_samples = prepared.parameters.most_samples_per_ray();
-        let limit = sample_limit(most_samples, prepared.iterations_per_sample, 1.0);
-        let is_whole = limit == u32::MAX;
+        let sample_limit = sample_limit(most_samples, prepared.iterations_per_sample, 1.0);
+        let is_whole = sample_limit == u32::MAX;
         let rays = if is_whole { 1 } else { u64::from(width) * u64::from(height) };
         let state_bytes = rays * prepared.variant.state_bytes();
         if state_bytes > MOST_STATE_BYTES {
             return Err(PairError::LongRays { samples: most_samples });
         }
-        let pass = self.repair_pass(gpu)?;
-        frame.send(|encoder| pass.dispatch(encoder, frame, repairs));
         let states = self.states(gpu, state_bytes);
-        let target = self.target_group(gpu, derived, [&states, &repairs.tiles]);
-        let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target };
         let variant = prepared.variant.of_listed_tiles();
-        let pipeline = self.casts.pipeline(gpu, if is_whole { variant } else { variant.in_parts() })?;
-        let mut view = ViewUniform::new(&prepared.parameters, epipolar.derived());
-        view.sample_limit = limit;
-        let mut repair = Duration::ZERO;
-        while view.first_sample < most_samples {
-            gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&view));
-            let workgroups = Workgroups::Listed(&repairs.plan);
-            repair += frame.run(|encoder| {
-                cast_pass::dispatch(encoder, &pipeline, &bindings, workgroups, Stamps::NONE);
-            })?;
-            view.first_sample = view.first_sample.saturating_add(limit);
-        }
-        let bytes = pair.bytes + repairs.bytes() + state_bytes;
-        Ok(PairReport { bytes, repair, ..pair })
+        Ok(Repair {
+            bytes: repairs.bytes() + state_bytes,
+            target: self.target_group(gpu, derived, [&states, &repairs.tiles]),
+            pipeline: self.casts.pipeline(gpu, if is_whole { variant } else { variant.in_parts() })?,
+            pass: self.repair_pass(gpu)?.clone(),
+            repairs: repairs.clone(),
+            sample_limit,
+        })
     }
 }
 

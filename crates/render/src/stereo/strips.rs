@@ -4,7 +4,7 @@
 //! order in which they are made; where strips overlap, their sums are merged, for `over` is associative.
 
 use super::pair::{Eye, PairFrame, PairReport};
-use super::repair::MEASURE_FORMAT;
+use super::repair::{MEASURE_FORMAT, Repair};
 use super::{PairError, Quality, Splat};
 use crate::buffers::{check_sizes, storage};
 use crate::cast_pass::VariantPipelines;
@@ -13,6 +13,7 @@ use crate::groups::{GroupLayouts, bind, layout, storage_buffer, storage_texture}
 use crate::pacer::{BAND_ROWS, ITERATION_LIMIT, LOCKSTEP_RAYS};
 use crate::readback::read_buffer;
 use crate::uniforms::PairUniform;
+use std::time::{Duration, Instant};
 
 /// Columns of a strip: two words of `lib/strip_bands.wgsl`. More of them overlap less, fewer keep more processors busy.
 const STRIP_COLUMNS: u32 = 64;
@@ -63,6 +64,26 @@ pub(crate) struct StripPass {
     cast: VariantPipelines,
     merge: VariantPipelines,
     kept: Option<StripBuffers>,
+    /// Whether the first dispatch of the last pair has left nothing to others.
+    ends_at_once: bool,
+}
+
+/// What is sent off after a cast.
+struct Derivation {
+    merged: wgpu::SubmissionIndex,
+    repaired: Option<wgpu::SubmissionIndex>,
+}
+
+impl Derivation {
+    /// Waits until it is done, and returns what merging and repair have taken since.
+    fn wait(self, gpu: &Gpu) -> Result<[Duration; 2], GpuError> {
+        let start = Instant::now();
+        gpu.wait_for(self.merged)?;
+        let merged = start.elapsed();
+        let Some(repaired) = self.repaired else { return Ok([merged, Duration::ZERO]) };
+        gpu.wait_for(repaired)?;
+        Ok([merged, start.elapsed() - merged])
+    }
 }
 
 impl StripPass {
@@ -83,49 +104,72 @@ impl StripPass {
         let merge = VariantPipelines::new(layout.clone(), merge, entry_point, cuts);
         let list = VariantPipelines::new(layout.clone(), "stereo/list_columns", "list_columns", &[]);
         let cast = VariantPipelines::new(layout, "stereo/cast_strips", "cast_strips", &files);
-        Self { strip_layout, list, cast, merge, kept: None }
+        Self { strip_layout, list, cast, merge, kept: None, ends_at_once: true }
     }
 
-    /// Makes a pair.
-    pub(crate) fn render(&mut self, frame: &PairFrame<'_>) -> Result<PairReport, PairError> {
+    /// Makes a pair. What follows the cast is sent off with it, before it is known whether it has ended, if that of the last
+    /// pair had at once; if this one has not, it is sent again.
+    pub(crate) fn render(
+        &mut self,
+        frame: &PairFrame<'_>,
+        repair: Option<&Repair>,
+    ) -> Result<PairReport, PairError> {
+        let gpu = frame.gpu;
         let strips = PairUniform {
             iteration_limit: iteration_limit(frame)?,
             iterations_of_shading: frame.prepared.iterations_of_shading,
             lockstep_rays: LOCKSTEP_RAYS,
             ..frame.uniform(STRIP_COLUMNS)
         };
-        let list = self.list.pipeline(frame.gpu, frame.prepared.variant)?;
-        let pipeline = self.cast.pipeline(frame.gpu, frame.prepared.variant)?;
-        let merge = self.merge.pipeline(frame.gpu, frame.prepared.variant)?;
+        let list = self.list.pipeline(gpu, frame.prepared.variant)?;
+        let pipeline = self.cast.pipeline(gpu, frame.prepared.variant)?;
+        let merge = self.merge.pipeline(gpu, frame.prepared.variant)?;
         let sizes = sizes(frame, &strips);
-        let buffers = self.buffers(frame.gpu, &sizes)?;
+        let buffers = self.buffers(gpu, &sizes)?;
         let group = self.group(frame, &buffers);
-        let bindings = frame.bind(Eye::Reference, &strips);
         let [_, bands] = frame.squares(Eye::Reference);
-        buffers.finish_all(&frame.gpu.queue);
-        let mut cast = frame.run(|encoder| {
+        let derive = || {
+            let bindings = frame.bind(Eye::Derived, &strips);
+            let merged = frame.send(|encoder| {
+                let mut pass = bindings.begin_pass(encoder, &merge, Some(&group));
+                let [x, y] = merged_workgroups(frame);
+                pass.dispatch_workgroups(x, y, 1);
+            });
+            Derivation { merged, repaired: repair.map(|repair| repair.send(frame)) }
+        };
+
+        let start = Instant::now();
+        let bindings = frame.bind(Eye::Reference, &strips);
+        buffers.finish_all(&gpu.queue);
+        let sent = frame.send(|encoder| {
             let mut pass = bindings.begin_pass(encoder, &list, Some(&group));
             pass.dispatch_workgroups(strips.count, bands, 1);
             pass.set_pipeline(&pipeline);
             pass.dispatch_workgroups(strips.count, bands, 1);
-        })?;
+            drop(pass);
+            buffers.count_unfinished(encoder);
+        });
+        let derived_at_once = self.ends_at_once.then(derive);
+        gpu.wait_for(sent)?;
+        let mut cast = start.elapsed();
+        let mut times = derived_at_once.map(|derived| derived.wait(gpu)).transpose()?;
+        self.ends_at_once = true;
         let resumed = PairUniform { is_resuming: 1, ..strips };
-        while buffers.is_unfinished(frame.gpu)? {
+        while buffers.is_unfinished(gpu)? {
+            (self.ends_at_once, times) = (false, None);
             let bindings = frame.bind(Eye::Reference, &resumed);
-            buffers.finish_all(&frame.gpu.queue);
+            buffers.finish_all(&gpu.queue);
             cast += frame.run(|encoder| {
                 let mut pass = bindings.begin_pass(encoder, &pipeline, Some(&group));
                 pass.dispatch_workgroups(strips.count, bands, 1);
+                drop(pass);
+                buffers.count_unfinished(encoder);
             })?;
         }
-        let bindings = frame.bind(Eye::Derived, &strips);
-        let composite = frame.run(|encoder| {
-            let mut pass = bindings.begin_pass(encoder, &merge, Some(&group));
-            let [x, y] = merged_workgroups(frame);
-            pass.dispatch_workgroups(x, y, 1);
-        })?;
+        let [composite, repair_time] = times.map_or_else(|| derive().wait(gpu), Ok)?;
         self.kept = Some(buffers);
-        Ok(PairReport { bytes: sizes.iter().sum(), cast, composite, ..PairReport::default() })
+        let bytes = sizes.iter().sum::<u64>() + repair.map_or(0, |repair| repair.bytes);
+        Ok(PairReport { bytes, cast, composite, repair: repair_time, ..PairReport::default() })
     }
 
     /// Room for a pair: that of the last pair if it is large enough. Each strip empties its own sums.
@@ -203,11 +247,13 @@ impl StripBuffers {
         queue.write_buffer(self.bands(), 0, bytemuck::bytes_of(&0_u32));
     }
 
+    /// Encodes the copy of how many a dispatch leaves, after it.
+    fn count_unfinished(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.copy_buffer_to_buffer(self.bands(), 0, &self.unfinished, 0, 4);
+    }
+
     /// Whether the last dispatch has left anything to the next.
     fn is_unfinished(&self, gpu: &Gpu) -> Result<bool, GpuError> {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(self.bands(), 0, &self.unfinished, 0, 4);
-        gpu.queue.submit([encoder.finish()]);
         let count: u32 = read_buffer(gpu, &self.unfinished, bytemuck::pod_read_unaligned)?;
         self.unfinished.unmap();
         Ok(count > 0)
@@ -256,7 +302,7 @@ mod tests {
     fn constants_are_those_of_the_kernels() {
         let choices = [
             ("lib/join", "lib/join_over"),
-            ("lib/cuts", "lib/cuts_none"),
+            ("lib/cuts", "lib/cuts_kept"),
             ("lib/segment_sink", "stereo/sink_strips"),
             ("lib/accumulate", "lib/accumulate_composite"),
             ("lib/classify", "lib/classify_value"),
