@@ -1,5 +1,6 @@
 //! `bench warp`: how far what a display shows is from what its eyes should see, by the protocol of VR §6.2.
 
+mod aim;
 mod charts;
 mod costs;
 mod live;
@@ -21,6 +22,7 @@ use crate::progress::Bar;
 use crate::skipping::{SkipArgs, SkipName};
 use crate::spec;
 use crate::transfer_spec::{self, TransferSpec};
+use aim::AimName;
 use clap::{Args, ValueEnum};
 use costs::{Costs, Timed};
 use live::Keeping;
@@ -94,6 +96,10 @@ pub(crate) struct WarpBenchArgs {
 
     #[command(flatten)]
     layering: LayeringArgs,
+
+    /// Which pose pictures are cast for: that at which they will be shown first, as if it were known, or as it is predicted.
+    #[arg(long, value_enum, default_value_t = AimName::Known)]
+    aim: AimName,
 
     /// Turn of the head within the second, degrees.
     #[arg(long, value_name = "DEG", default_value_t = 30.0, value_parser = spec::within(-180.0..=180.0), allow_negative_numbers = true)]
@@ -236,12 +242,13 @@ impl WarpBenchArgs {
             let path = motion.about(Pose::of(&middle), extent)?;
             let mut display = pace.display;
             let refreshes = match self.live {
-                None => timeline::refreshes(&path, pace, self.size)?,
+                None => timeline::refreshes(&path, self.aim, pace, self.size)?,
                 Some(refreshes) => {
                     let mut engine = camera.engine.live(shot)?;
                     let pace = live::fitting_pace(&mut engine, &path, &middle, refreshes, pace.reserve_s)?;
                     let case = format!("{name}, {}", motion.name());
-                    let (refreshes, keeping) = live::refreshes(&mut engine, &path, &middle, &pace, case)?;
+                    let moves = (&path, self.aim);
+                    let (refreshes, keeping) = live::refreshes(&mut engine, moves, &middle, &pace, case)?;
                     measured.keepings.push(keeping);
                     display = pace.display;
                     refreshes

@@ -1,6 +1,6 @@
 //! The volume on the device, and the pictures that are cast of it under a budget.
 
-use super::loading::Arrived;
+use super::loading::{Arrived, Skipping};
 use super::state::{Clip, EyeMethod, Look, State, Transfer, WarpName};
 use crate::failure::Failure;
 use crate::look::ModeName;
@@ -9,12 +9,11 @@ use std::time::Duration;
 use wheatstone_core::budget::QualityControl;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::Placement;
-use wheatstone_core::skip::SkipPlan;
+use wheatstone_core::skip::Structure;
 use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_core::volume::Grid;
 use wheatstone_core::warp::LayerThresholds;
 use wheatstone_render::live::{Activity, Front, LiveError, LiveView};
-use wheatstone_render::skip::SkipBuilder;
 use wheatstone_render::{Gpu, GpuError, GpuVolume, LayersError, Leap, Prepared, Renderer, Sources};
 
 /// Refreshes that a picture in motion takes at most.
@@ -33,8 +32,10 @@ pub(crate) struct Casting {
 struct Scene {
     grid: Grid,
     volume: GpuVolume,
-    skipping: Option<(SkipBuilder, SkipPlan)>,
+    skipping: Option<Skipping>,
     settings: Settings,
+    /// Of the skip map that the settings have got; none without one.
+    structure: Option<Structure>,
     aimed: Vec<View>,
     live: LiveView,
     is_resting: bool,
@@ -69,7 +70,8 @@ impl Casting {
         Ok(Self { renderer: Renderer::new(gpu)?, scene: None })
     }
 
-    /// Shows another volume; the picture of the last one stays until one of this is complete.
+    /// Shows another volume; the picture of the last one stays until one of this is complete. What cannot be shown changes
+    /// nothing.
     pub(crate) fn receive(
         &mut self,
         gpu: &Gpu,
@@ -79,7 +81,9 @@ impl Casting {
     ) -> Result<(), Failure> {
         let Arrived { facts, volume, mut skipping } = arrived;
         let settings = Settings::of(state);
-        let prepared = prepare(gpu, &mut self.renderer, &facts.grid, &volume, skipping.as_mut(), state)?;
+        let structure = skipping.as_ref().and_then(|skipping| skipping.at_rest(&state.look));
+        let prepared =
+            prepare(gpu, &mut self.renderer, (&facts.grid, &volume), skipping.as_mut(), structure, state)?;
         let (live, aimed, pictures) = match self.scene.take() {
             Some(Scene { mut live, aimed, pictures, .. }) => {
                 live.replace(prepared);
@@ -93,30 +97,37 @@ impl Casting {
                 (live, aimed, 0)
             }
         };
-        let is_resting = false;
+        let (grid, is_resting) = (facts.grid, false);
         self.scene =
-            Some(Scene { grid: facts.grid, volume, skipping, settings, aimed, live, is_resting, pictures });
+            Some(Scene { grid, volume, skipping, settings, structure, aimed, live, is_resting, pictures });
         Ok(())
     }
 
-    /// Aims at what a state shows in an area of some pixels.
+    /// Aims at what a state shows in an area of some pixels. While settings change they get the skip map that is made quickly,
+    /// and when the eye moves next the one that lets rays leap furthest.
     pub(crate) fn follow(&mut self, gpu: &Gpu, state: &State, size: [u32; 2]) -> Result<(), Failure> {
-        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let Self { renderer, scene: Some(scene) } = self else { return Ok(()) };
         let settings = Settings::of(state);
-        if settings != scene.settings {
+        let aimed = views(state, size)?;
+        let (has_changed, has_moved) = (settings != scene.settings, aimed != scene.aimed);
+        let structure = scene.skipping.as_ref().and_then(|skipping| {
+            if has_changed { skipping.while_edited(&state.look) } else { skipping.at_rest(&state.look) }
+        });
+        if has_changed || (has_moved && structure != scene.structure) {
+            // What cannot be prepared is not tried again.
+            let before = std::mem::replace(&mut scene.settings, settings);
+            scene.structure = structure;
             let Scene { grid, volume, skipping, .. } = &mut *scene;
-            let prepared = prepare(gpu, &mut self.renderer, grid, volume, skipping.as_mut(), state)?;
-            let cost = |settings: &Settings| (settings.look.cost(), settings.keeps_layers);
-            if cost(&settings) == cost(&scene.settings) {
+            let prepared = prepare(gpu, renderer, (grid, volume), skipping.as_mut(), structure, state)?;
+            let sample_cost = |settings: &Settings| (settings.look.mode_and_shading(), settings.keeps_layers);
+            if sample_cost(&scene.settings) == sample_cost(&before) {
                 scene.live.supersede(prepared);
             } else {
                 scene.live.replace(prepared);
             }
-            scene.settings = settings;
             scene.is_resting = false;
         }
-        let aimed = views(state, size)?;
-        if aimed != scene.aimed {
+        if has_moved {
             scene.live.aim(&aimed).map_err(live_failure)?;
             scene.aimed = aimed;
             scene.is_resting = false;
@@ -127,7 +138,12 @@ impl Casting {
     /// Hands over as much work as a budget holds, without waiting.
     pub(crate) fn refresh(&mut self, gpu: &Gpu, budget: Duration) -> Result<(), Failure> {
         let Some(scene) = &mut self.scene else { return Ok(()) };
-        let refresh = scene.live.refresh(gpu, &mut self.renderer, budget).map_err(live_failure)?;
+        let refreshed = scene.live.refresh(gpu, &mut self.renderer, budget);
+        if refreshed.is_err() {
+            // The front may be the one before.
+            scene.pictures += 1;
+        }
+        let refresh = refreshed.map_err(live_failure)?;
         scene.is_resting = refresh.activity == Activity::Resting;
         if matches!(refresh.activity, Activity::Casting { completes_view: true, .. }) {
             scene.pictures += 1;
@@ -185,22 +201,20 @@ fn keeps_layers(state: &State) -> bool {
 fn prepare(
     gpu: &Gpu,
     renderer: &mut Renderer,
-    grid: &Grid,
-    volume: &GpuVolume,
-    skipping: Option<&mut (SkipBuilder, SkipPlan)>,
+    (grid, volume): (&Grid, &GpuVolume),
+    skipping: Option<&mut Skipping>,
+    structure: Option<Structure>,
     state: &State,
 ) -> Result<Arc<Prepared>, Failure> {
     let settings = state.settings().map_err(Failure::input)?;
     let parameters = CastParameters::new(&settings, &placement(grid, &state.look));
     // A map of its own for each settings: a picture under way still leaps by the one before.
     let map;
-    let leap = match skipping {
-        None => Leap::Nothing,
-        Some((builder, _)) if matches!(state.look.mode, ModeName::Mip | ModeName::Minip) => {
-            Leap::IdleBlocks(builder.values())
-        }
-        Some((builder, plan)) => {
-            map = builder.map(gpu, &parameters, plan.while_edited)?;
+    let leap = match (skipping, structure) {
+        (None, _) => Leap::Nothing,
+        (Some(skipping), None) => Leap::IdleBlocks(skipping.builder.values()),
+        (Some(skipping), Some(structure)) => {
+            map = skipping.builder.map(gpu, &parameters, structure)?;
             Leap::EmptyBlocks(&map)
         }
     };

@@ -10,6 +10,8 @@ use std::path::PathBuf;
 pub(crate) enum Command {
     /// Opens a volume, or a saved view with the volume that it shows.
     Open(PathBuf),
+    /// Opens the first of the files that have been dropped together.
+    Drop(Vec<PathBuf>),
     /// Opens the volume that ships with the program.
     OpenShipped,
     /// Reads the volume again and keeps everything else.

@@ -181,11 +181,15 @@ impl Viewer {
         }
     }
 
-    /// Shows a volume that has arrived.
+    /// Shows a volume that has arrived, if it can be prepared.
     fn receive(&mut self, canvas: &Canvas) -> Result<(), Failure> {
-        let Some(arrived) = self.session.step(&self.gpu) else { return Ok(()) };
-        let received = self.casting.receive(&self.gpu, *arrived, self.session.state(), canvas.size());
-        self.survive(received).map(drop)
+        let Some((arrived, showing)) = self.session.step(&self.gpu) else { return Ok(()) };
+        match self.casting.receive(&self.gpu, *arrived, &showing.state, canvas.size()) {
+            Ok(()) => self.session.show(showing),
+            Err(Failure::Gpu(error)) if is_end(&error) => return Err(error.into()),
+            Err(failure) => self.session.refuse(&failure),
+        }
+        Ok(())
     }
 
     /// Does what a script has due; gives that, and a size that it asks for.
@@ -202,7 +206,7 @@ impl Viewer {
             match happening {
                 Happening::Command(command) => self.session.perform(command),
                 Happening::Event(event) => input.events.push(event.clone()),
-                Happening::Drop(path) => self.session.perform(&Command::Open(path.clone())),
+                Happening::Drop(path) => self.session.perform(&Command::Drop(vec![path.clone()])),
                 Happening::Resize(size) => resize = Some(size.map(clamped_side)),
             }
         }
@@ -310,7 +314,7 @@ impl Viewer {
     /// Notes a failure; a device that is gone ends the program.
     fn survive<T>(&mut self, outcome: Result<T, Failure>) -> Result<Option<T>, Failure> {
         match outcome {
-            Err(Failure::Gpu(error @ (GpuError::Lost { .. } | GpuError::Hung { .. }))) => Err(error.into()),
+            Err(Failure::Gpu(error)) if is_end(&error) => Err(error.into()),
             Err(failure) => {
                 self.session.notes.failed(failure.to_string());
                 Ok(None)
@@ -318,6 +322,11 @@ impl Viewer {
             Ok(made) => Ok(Some(made)),
         }
     }
+}
+
+/// Whether a device that says so is gone.
+fn is_end(error: &GpuError) -> bool {
+    matches!(error, GpuError::Lost { .. } | GpuError::Hung { .. })
 }
 
 fn described_quality(casting: &Casting) -> String {

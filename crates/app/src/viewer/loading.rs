@@ -2,13 +2,15 @@
 
 use super::facts::Facts;
 use super::job::{Job, Progress, Waker};
+use super::state::Look;
 use crate::failure::Failure;
+use crate::look::ModeName;
 use crate::shipped;
 use crate::volume_args::print_warnings;
 use anyhow::Context as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use wheatstone_core::skip::{Skip, SkipPlan, SkipRequest};
+use wheatstone_core::skip::{Skip, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_io::{RawLayout, read_raw, read_volume};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
@@ -34,7 +36,30 @@ pub(crate) struct Arrived {
     pub(crate) facts: Facts,
     pub(crate) volume: GpuVolume,
     /// What skip maps are made with; none for a volume too small to skip any of.
-    pub(crate) skipping: Option<(SkipBuilder, SkipPlan)>,
+    pub(crate) skipping: Option<Skipping>,
+}
+
+/// What tells casts of a volume what to leap over.
+pub(crate) struct Skipping {
+    pub(crate) builder: SkipBuilder,
+    plan: SkipPlan,
+}
+
+impl Skipping {
+    /// The skip map of settings that are being edited.
+    pub(crate) fn while_edited(&self, look: &Look) -> Option<Structure> {
+        leaps_by_map(look).then_some(self.plan.while_edited)
+    }
+
+    /// The skip map of settings that rest.
+    pub(crate) fn at_rest(&self, look: &Look) -> Option<Structure> {
+        leaps_by_map(look).then_some(self.plan.structure)
+    }
+}
+
+/// Projections of extremes leap by the ranges of blocks.
+fn leaps_by_map(look: &Look) -> bool {
+    !matches!(look.mode, ModeName::Mip | ModeName::Minip)
 }
 
 /// Two jobs, one after the other: a file is read while the device is still being opened.
@@ -113,7 +138,7 @@ fn upload(gpu: &Gpu, read: Read, tell: &dyn Fn(f32)) -> Result<Arrived, Failure>
     let skipping = match plan {
         Some(plan) => {
             let kernels = SkipKernels::new(gpu)?;
-            Some((SkipBuilder::new(gpu, &kernels, &on_device, plan.block_size)?, plan))
+            Some(Skipping { builder: SkipBuilder::new(gpu, &kernels, &on_device, plan.block_size)?, plan })
         }
         None => None,
     };

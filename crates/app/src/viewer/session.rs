@@ -33,6 +33,13 @@ pub(crate) struct Session {
     has_quit: bool,
 }
 
+/// What is to be shown of a volume that has arrived.
+pub(crate) struct Showing {
+    pub(crate) state: State,
+    facts: Facts,
+    source: Source,
+}
+
 /// A volume that is on its way, and how it is to be shown.
 struct Pending {
     source: Source,
@@ -57,7 +64,7 @@ impl Session {
             has_quit: false,
         };
         match &source.file {
-            Some(file) if is_view(file) => session.open(file)?,
+            Some(file) if is_view(file) && source.layout.is_none() => session.open(file)?,
             _ => session.load(source, None)?,
         }
         Ok(session)
@@ -95,19 +102,39 @@ impl Session {
         }
     }
 
-    /// Goes on with a load; what has arrived is to be shown from now on.
-    pub(crate) fn step(&mut self, gpu: &Arc<Gpu>) -> Option<Box<Arrived>> {
+    /// Goes on with a load; what has arrived is to be prepared, then shown or refused.
+    pub(crate) fn step(&mut self, gpu: &Arc<Gpu>) -> Option<(Box<Arrived>, Showing)> {
         let Pending { source, loading, view } = self.pending.take()?;
-        match loading.step(gpu, &self.wake) {
-            Ok(Step::UnderWay(loading)) => {
+        let step = loading.step(gpu, &self.wake).and_then(|step| match step {
+            Step::UnderWay(loading) => {
                 self.pending = Some(Pending { source, loading, view });
-                None
+                Ok(None)
             }
-            Ok(Step::Done(arrived)) => match self.receive(source, view, &arrived.facts) {
-                Ok(()) => Some(arrived),
-                Err(failure) => self.give_up(&failure),
-            },
-            Err(failure) => self.give_up(&failure),
+            Step::Done(arrived) => {
+                let showing = self.showing(source, view, &arrived.facts)?;
+                Ok(Some((arrived, showing)))
+            }
+        });
+        step.unwrap_or_else(|failure| {
+            self.refuse(&failure);
+            None
+        })
+    }
+
+    /// A volume that has arrived is shown from now on.
+    pub(crate) fn show(&mut self, showing: Showing) {
+        self.notes.done(format!("showing {}", showing.facts.name));
+        self.state = showing.state;
+        self.source = showing.source;
+        self.facts = Some(showing.facts);
+    }
+
+    /// A volume cannot be shown; what is shown stays.
+    pub(crate) fn refuse(&mut self, failure: &Failure) {
+        self.notes.failed(failure.to_string());
+        if self.facts.is_none() {
+            self.captures.clear();
+            self.turntable = None;
         }
     }
 
@@ -138,6 +165,7 @@ impl Session {
         match command {
             Command::Edit(edit) => self.state.apply(edit).map_err(Failure::input),
             Command::Open(path) => self.open(path),
+            Command::Drop(paths) => self.open_first(paths),
             Command::OpenShipped => self.load(Source { file: None, layout: None }, None),
             Command::Reload => self.load(self.source.clone(), Some(self.state.clone())),
             Command::Save(path) => self.save(path),
@@ -189,37 +217,36 @@ impl Session {
         self.load(source, Some(view))
     }
 
+    fn open_first(&mut self, paths: &[PathBuf]) -> Result<(), Failure> {
+        let Some((first, others)) = paths.split_first() else { return Ok(()) };
+        if !others.is_empty() {
+            let name = first.file_name().unwrap_or(first.as_os_str()).display();
+            self.notes.done(format!(
+                "{name} alone is opened, not the {} other files: slices are not put together",
+                others.len()
+            ));
+        }
+        self.open(first)
+    }
+
     fn load(&mut self, source: Source, view: Option<State>) -> Result<(), Failure> {
         let loading = Loading::begin(source.clone(), Arc::clone(&self.wake))?;
         self.pending = Some(Pending { source, loading, view });
         Ok(())
     }
 
-    fn receive(&mut self, source: Source, view: Option<State>, facts: &Facts) -> Result<(), Failure> {
-        self.state = match view {
+    fn showing(&self, source: Source, view: Option<State>, facts: &Facts) -> Result<Showing, Failure> {
+        let state = match view {
             Some(view) => view,
             None => {
-                let transfer = facts.transfer(&suiting(&source))?;
                 let clip = Clip { has_handles: self.state.clip.has_handles, ..Clip::default() };
                 let mut state = self.state.clone();
                 (state.file, state.layout) = (source.file.clone(), source.layout.clone());
-                (state.transfer, state.clip) = (transfer, clip);
+                (state.transfer, state.clip) = (facts.transfer(&suiting(&source))?, clip);
                 state
             }
         };
-        self.source = source;
-        self.facts = Some(facts.clone());
-        self.notes.done(format!("showing {}", facts.name));
-        Ok(())
-    }
-
-    fn give_up(&mut self, failure: &Failure) -> Option<Box<Arrived>> {
-        self.notes.failed(failure.to_string());
-        if self.facts.is_none() {
-            self.captures.clear();
-            self.turntable = None;
-        }
-        None
+        Ok(Showing { state, facts: facts.clone(), source })
     }
 
     fn save(&mut self, path: &Path) -> Result<(), Failure> {
@@ -257,12 +284,46 @@ fn suiting(source: &Source) -> TransferSpec {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wheatstone_core::volume::{Grid, Volume, Voxels};
 
     #[test]
     fn a_session_begins_with_an_absolute_path() {
         let source = Source { file: Some("missing.nrrd".into()), layout: None };
         let session = Session::begin(source, Arc::new(|| ())).unwrap();
         assert!(session.pending.unwrap().source.file.unwrap().is_absolute());
+    }
+
+    #[test]
+    fn of_files_dropped_together_the_first_is_opened_and_the_others_are_told_of() {
+        let source = Source { file: Some("missing.nrrd".into()), layout: None };
+        let mut session = Session::begin(source, Arc::new(|| ())).unwrap();
+        session.perform(&Command::Drop(vec!["a.dcm".into(), "b.dcm".into(), "c.dcm".into()]));
+        assert!(session.pending.as_ref().unwrap().source.file.as_ref().unwrap().ends_with("a.dcm"));
+        let told = &session.notes.latest()[0].text;
+        assert!(told.contains("a.dcm") && told.contains("2 other files"), "{told}");
+        session.perform(&Command::Drop(vec!["b.dcm".into()]));
+        assert_eq!(session.notes.latest().len(), 1);
+    }
+
+    #[test]
+    fn a_volume_that_is_refused_leaves_everything_as_it_was() {
+        let source = Source { file: None, layout: None };
+        let mut session = Session::begin(source.clone(), Arc::new(|| ())).unwrap();
+        let grid = Grid::centred([2, 2, 2], [1.0; 3]).unwrap();
+        let volume = Volume::new(grid, Voxels::U8((0..8).collect())).unwrap();
+        let facts = Facts::of(&volume, Some(Path::new("b.nrrd")));
+        let arrives = |session: &Session| {
+            let source = Source { file: Some("b.nrrd".into()), layout: None };
+            session.showing(source, None, &facts).unwrap()
+        };
+        let before = session.state.clone();
+        let _ = arrives(&session);
+        session.refuse(&Failure::input("no memory for b.nrrd"));
+        assert_eq!((&session.state, &session.source), (&before, &source));
+        assert!(session.facts.is_none() && session.notes.failures()[0].contains("no memory"));
+        session.show(arrives(&session));
+        assert!(session.facts.is_some() && session.state.file == session.source.file);
+        assert_ne!(session.state, before);
     }
 
     #[test]
@@ -274,7 +335,7 @@ mod tests {
         session.perform(&picture);
         assert!(session.is_capturing());
         session.pending = None;
-        assert!(session.give_up(&Failure::input("missing")).is_none());
+        session.refuse(&Failure::input("missing"));
         assert!(!session.is_capturing());
         session.perform(&picture);
         session.perform(&Command::Turntable { pictures: 2, path: folder.path().join("t.png") });

@@ -133,13 +133,13 @@ fn scripts_and_files_that_are_no_good_are_refused() {
 }
 
 #[test]
-fn a_view_of_a_raw_file_opened_by_flags_is_opened_again() {
+fn a_raw_file_is_opened_by_flags_whatever_its_name_and_again_by_its_view() {
     if !needs_adapter() {
         return;
     }
     let bench = Bench::new();
     let voxels: Vec<u8> = (0..16 * 16 * 16).map(|index| (index % 16 * 16) as u8).collect();
-    std::fs::write(bench.path("ramp.bin"), voxels).unwrap();
+    std::fs::write(bench.path("ramp.json"), voxels).unwrap();
     let view = |file: &str, script: &str, flags: &[&str]| {
         std::fs::write(bench.path("script.jsonl"), script).unwrap();
         let args = ["view", file, "--headless", "--size", "320x200", "--script", "script.jsonl"];
@@ -148,7 +148,7 @@ fn a_view_of_a_raw_file_opened_by_flags_is_opened_again() {
     };
     let saving = "{\"wait_for\": \"rest\"}\n{\"do\": {\"orbit\": {\"right_deg\": 40, \"up_deg\": 20}}}\n\
                   {\"do\": {\"save\": \"view.json\"}}";
-    view("ramp.bin", saving, &["--raw-size", "16x16x16", "--raw-type", "uint8"]);
+    view("ramp.json", saving, &["--raw-size", "16x16x16", "--raw-type", "uint8"]);
     let shooting = "{\"wait_for\": \"rest\"}\n{\"press\": \"H\"}\n{\"wait_for\": \"rest\"}\n";
     view("view.json", &format!("{shooting}{{\"do\": {{\"picture\": \"a.png\"}}}}"), &[]);
     let opening = "{\"do\": {\"open\": \"view.json\"}}\n{\"wait_for\": \"rest\"}\n";

@@ -24,8 +24,10 @@ const MOST_DEVIATIONS: f64 = 8.0;
 /// remembered batches would have kept to, so the share that exceeds it is about that, whatever the distribution of errors.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Margin {
-    /// Of the remembered batches.
-    tolerated: usize,
+    /// Of the remembered batches, how many may take longer.
+    tolerated_share: f64,
+    /// Batches that have been learnt from, up to those that are remembered.
+    learnt: usize,
     /// Oldest first.
     recent_deviations: VecDeque<f64>,
 }
@@ -40,21 +42,21 @@ impl Default for Margin {
 impl Margin {
     /// So large a share of batches may take longer, but one in 256 at least.
     pub(super) fn tolerating(share: f64) -> Self {
-        let tolerated = ((share * REMEMBERED as f64) as usize).clamp(1, DOUBTFUL - 1);
         let mut recent_deviations = VecDeque::from([0.0; REMEMBERED]);
-        recent_deviations.range_mut(DOUBTFUL - 1 - tolerated..DOUBTFUL).for_each(|d| *d = FIRST_DEVIATIONS);
-        Self { tolerated, recent_deviations }
+        recent_deviations[DOUBTFUL - 1] = FIRST_DEVIATIONS;
+        Self { tolerated_share: share.max(1.0 / REMEMBERED as f64), learnt: 0, recent_deviations }
     }
 
     /// Forgets all batches.
     pub(super) fn forget(&mut self) {
-        *self = Self::tolerating(self.tolerated as f64 / REMEMBERED as f64);
+        *self = Self::tolerating(self.tolerated_share);
     }
 
     /// Deviations by which to undercut a budget: the most of late but for those tolerated.
     pub(super) fn deviations(&self) -> f64 {
         let mut deviations: Vec<f64> = self.recent_deviations.iter().copied().collect();
-        let (_, most, _) = deviations.select_nth_unstable_by(REMEMBERED - 1 - self.tolerated, f64::total_cmp);
+        let tolerated = ((self.tolerated_share * self.learnt as f64) as usize).min(REMEMBERED - 1);
+        let (_, most, _) = deviations.select_nth_unstable_by(REMEMBERED - 1 - tolerated, f64::total_cmp);
         most.max(FEWEST_DEVIATIONS)
     }
 
@@ -64,6 +66,7 @@ impl Margin {
         if deviations.is_finite() {
             self.recent_deviations.pop_front();
             self.recent_deviations.push_back(deviations.min(MOST_DEVIATIONS));
+            self.learnt = (self.learnt + 1).min(REMEMBERED);
         }
     }
 }
@@ -82,10 +85,10 @@ mod tests {
         assert_eq!(learn(&[]), FIRST_DEVIATIONS);
         assert_eq!(learn(&[1.0; DOUBTFUL - 2]), FIRST_DEVIATIONS);
         assert_eq!(learn(&[-1.0, 1.0]), 1.0);
-        assert_eq!(learn(&[2.0]), 1.0);
-        assert_eq!(learn(&[1e9]), 2.0);
+        assert_eq!(learn(&[2.0]), 2.0);
         assert_eq!(learn(&[1e9]), MOST_DEVIATIONS);
         assert_eq!(learn(&[1.5; REMEMBERED]), 1.5);
+        assert_eq!(learn(&[1e9]), 1.5);
         assert_eq!(learn(&[-3.0; REMEMBERED]), FEWEST_DEVIATIONS);
     }
 

@@ -10,6 +10,9 @@ const REFINE_BELOW: f64 = 0.25;
 /// more than the last.
 const LEVELS_AT_REST: u32 = 2;
 
+/// Levels by which a view in motion that is under way may be finer than it should be: it is then complete sooner than another.
+const LEVELS_TOO_FINE: u32 = 2;
+
 /// Chooses coarser views while something moves, so that a view takes no more than a number of refreshes, and finer ones
 /// when it rests, view by view up to full quality.
 ///
@@ -44,9 +47,21 @@ impl QualityControl {
         Self { in_motion, ..self }
     }
 
-    /// The quality of views in motion.
-    pub fn in_motion(&self) -> Quality {
-        self.in_motion
+    /// The quality of views in motion after one of quality `last` that takes `view_s` seconds of casting, of which a refresh has room
+    /// for `refresh_s`.
+    fn in_motion_after(&self, last: Quality, view_s: f64, refresh_s: f64) -> Quality {
+        let refreshes = view_s / refresh_s;
+        if last == self.in_motion && refreshes > 0.0 && refreshes.is_finite() {
+            self.adapted(refreshes)
+        } else {
+            self.in_motion
+        }
+    }
+
+    /// Whether a view under way of a quality, expected to take `view_s` seconds in all, is not worth its end once something moves.
+    pub fn is_too_fine(&self, quality: Quality, view_s: f64, refresh_s: f64) -> bool {
+        let coarser = self.in_motion_after(quality, view_s, refresh_s);
+        quality < self.in_motion || quality.level() + LEVELS_TOO_FINE <= coarser.level()
     }
 
     /// The view, the transfer function or anything else that is seen has changed at a time in seconds.
@@ -62,10 +77,7 @@ impl QualityControl {
     /// The quality of the view that begins now, to be asked once per view, after one of quality `last` that took `view_s` seconds of casting, of which
     /// a refresh has room for `refresh_s`. Durations that are not above zero and finite teach nothing.
     pub fn next(&mut self, now_s: f64, last: Quality, view_s: f64, refresh_s: f64) -> Quality {
-        let refreshes = view_s / refresh_s;
-        if last == self.in_motion && refreshes > 0.0 && refreshes.is_finite() {
-            self.in_motion = self.adapted(refreshes);
-        }
+        self.in_motion = self.in_motion_after(last, view_s, refresh_s);
         if self.is_moving(now_s) {
             self.in_motion
         } else {
@@ -124,6 +136,18 @@ mod tests {
         assert_eq!(levels, [1, 0, 0, 0]);
         control.moved(2.0);
         assert_eq!(control.next(2.0, Quality::FULL, view_s(Quality::FULL), REFRESH_S), moving);
+    }
+
+    #[test]
+    fn views_that_turn_out_dear_are_too_fine_to_be_ended_in_motion() {
+        let control = QualityControl::new(4.0, REST_AFTER_S).unwrap().beginning_at(Quality::at(2));
+        let is_too_fine =
+            |level, refreshes: f64| control.is_too_fine(Quality::at(level), refreshes * REFRESH_S, REFRESH_S);
+        assert!(is_too_fine(1, 1.0) && !is_too_fine(3, 400.0));
+        assert_eq!(
+            [1.0, 4.1, 7.9, 8.1, f64::NAN].map(|n| is_too_fine(2, n)),
+            [false, false, false, true, false]
+        );
     }
 
     proptest! {

@@ -3,9 +3,12 @@
 use super::margin::Margin;
 use super::{Batch, BudgetError, CellCosts, Expectation, Predictor, ViewRequest};
 
-/// Share of a refresh for cells of a view that superseded another, until the first of them are measured: another transfer
+/// Share of a refresh for cells of a view that supersedes another, until the first of them are measured: another transfer
 /// function may make them dearer.
 const SHARE_IN_DOUBT: f64 = 0.5;
+
+/// Share of the cells of such a view that its first batch holds at most: where nothing was to be seen, all of them seem to fit.
+const CELLS_IN_DOUBT: f64 = 1.0 / 16.0;
 
 /// Casts a view after the other, a batch of cells per refresh (VR Alg. 4), with a front picture that is complete and a back
 /// picture under way.
@@ -28,6 +31,8 @@ pub struct CastSchedule<C> {
     views_begun: u64,
     /// Whether work has been dropped since the last swap.
     has_superseded: bool,
+    /// Whether the last view tells little about the next.
+    is_next_doubtful: bool,
 }
 
 /// A view that is being cast.
@@ -36,6 +41,8 @@ struct UnderWay<C> {
     request: ViewRequest<C>,
     order: Vec<usize>,
     next: usize,
+    /// Whether the last view tells little about it.
+    is_doubtful: bool,
 }
 
 impl<C: Clone + PartialEq> CastSchedule<C> {
@@ -50,6 +57,7 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
             front: None,
             views_begun: 0,
             has_superseded: false,
+            is_next_doubtful: false,
         }
     }
 
@@ -65,11 +73,12 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
         self.wanted = request;
     }
 
-    /// The picture to cast now: another transfer function, or a coarser view because something begins to move. Drops what is
-    /// under way, unless that has itself superseded other work since the last swap; then it is as [`aim`](Self::aim).
-    /// So pictures are completed however often one is superseded.
+    /// The picture to cast now: another transfer function, a far pose, or a coarser view because something begins to move. What is
+    /// known about costs is in doubt for it. Drops what is under way, unless that has itself superseded other work since the last
+    /// swap. So pictures are completed however often one is superseded.
     pub fn supersede(&mut self, request: ViewRequest<C>) {
         self.aim(request);
+        self.is_next_doubtful = true;
         if !self.has_superseded && self.back.take().is_some() {
             self.has_superseded = true;
         }
@@ -101,7 +110,8 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
     }
 
     /// Cells for a refresh with so many seconds for casting, at least one; none if the picture wanted is the one shown. While
-    /// nothing is known but cells of the same view, no more than have been measured: the first may be empty corners.
+    /// nothing is known but cells of the same view, no more than have been measured: the first may be empty corners. So it is where
+    /// what is known is in doubt, but for the first batch.
     /// Time that is negative or no number counts as none.
     pub fn plan(&mut self, available_s: f64) -> Option<Batch> {
         if self.back.is_none() && self.front.as_ref() != Some(&self.wanted) {
@@ -147,15 +157,23 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
             self.costs = CellCosts::new(*request.grid(), request.work_per_pixel());
         }
         self.views_begun += 1;
-        self.back = Some(UnderWay { order: request.grid().order(), request, next: 0 });
+        let is_doubtful = std::mem::take(&mut self.is_next_doubtful);
+        self.back = Some(UnderWay { order: request.grid().order(), request, next: 0, is_doubtful });
     }
 
     fn fill(&mut self, available_s: f64, at_least: usize) -> Option<Batch> {
-        let is_doubtful = self.has_superseded && self.costs.mean_measured_s().is_none();
-        let available_s = if is_doubtful { SHARE_IN_DOUBT * available_s } else { available_s };
         let deviations = self.margin.deviations();
-        let most = if self.costs.is_known() { usize::MAX } else { self.costs.measured_cells().max(at_least) };
+        let measured = self.costs.measured_cells();
         let back = self.back.as_mut()?;
+        let most = if !self.costs.is_known() {
+            measured.max(at_least)
+        } else if back.is_doubtful {
+            measured.max((CELLS_IN_DOUBT * back.order.len() as f64).ceil() as usize)
+        } else {
+            usize::MAX
+        };
+        let share = if back.is_doubtful && measured == 0 { SHARE_IN_DOUBT } else { 1.0 };
+        let available_s = share * available_s;
         let first = back.next;
         let (mut expected_s, mut variance_s2) = (0.0, 0.0);
         while let Some(&cell) = back.order.get(back.next) {

@@ -1,9 +1,6 @@
 //! When pictures are shown.
 
-use super::{Cadence, HeadError};
-
-/// Share of a period by which a time may miss a refresh and still be on it: rounding.
-pub(super) const ROUNDING: f64 = 1e-9;
+use super::HeadError;
 
 /// A display that shows a picture at fixed intervals; refresh 0 is at 0 s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,19 +34,6 @@ impl Display {
     pub fn refresh_s(&self, refresh: u64) -> f64 {
         refresh as f64 * self.period_s
     }
-
-    /// The first refresh at a time in seconds or after it; refresh 0 for negative times and what is no number.
-    pub fn refresh_from(&self, time_s: f64) -> u64 {
-        (time_s / self.period_s - ROUNDING).ceil() as u64
-    }
-
-    /// Which view is shown at which refresh, if each takes so many seconds to render.
-    ///
-    /// # Errors
-    /// A duration that is negative or not finite.
-    pub fn cadence(&self, render_s: f64) -> Result<Cadence, HeadError> {
-        Cadence::new(*self, render_s)
-    }
 }
 
 #[cfg(test)]
@@ -57,16 +41,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn refreshes_are_found_by_their_time() {
-        for rate_hz in [60.0, 72.0, 90.0, 144.0] {
-            let display = Display::new(rate_hz).unwrap();
-            for refresh in [0, 1, 7, 89, 100_003] {
-                let time_s = display.refresh_s(refresh);
-                assert_eq!(display.refresh_from(time_s), refresh);
-                assert_eq!(display.refresh_from(time_s + 0.1 * display.period_s()), refresh + 1);
-            }
-        }
-        assert_eq!([-3.0, f64::NAN].map(|s| Display::default().refresh_from(s)), [0, 0]);
+    fn refreshes_follow_each_other_by_the_rate() {
+        let display = Display::new(72.0).unwrap();
+        assert!((display.refresh_s(144) - 2.0).abs() < 1e-12);
+        assert_eq!(display.refresh_s(1), display.period_s());
     }
 
     #[test]

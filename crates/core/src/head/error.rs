@@ -9,9 +9,6 @@ pub enum HeadError {
     /// A number that must be above zero and finite.
     #[error("{0} {1}: must be above 0 and finite")]
     NotPositive(&'static str, f64),
-    /// A number that must not be below zero.
-    #[error("{0} {1}: must not be negative")]
-    Negative(&'static str, f64),
     /// A number that must be finite.
     #[error("{0} {1}: must be finite")]
     NotFinite(&'static str, f64),

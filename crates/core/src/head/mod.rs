@@ -1,10 +1,9 @@
 //! A head that moves before a display with a fixed refresh, in simulated time.
 //!
 //! After the simulation of Buchacher's thesis (VR §6.2), with which warps are measured: [`HeadMotion`] knows the pose at any
-//! time, [`Cadence`] which view is shown when, and [`PosePredictor`] guesses what a tracker's poses lead to. Poses are of the
+//! time, [`Display`] when pictures are shown, and [`PosePredictor`] guesses what a tracker's poses lead to. Poses are of the
 //! middle between the eyes, the middle view of a [`Rig`](crate::view::Rig).
 
-mod cadence;
 mod display;
 mod error;
 mod motion;
@@ -12,7 +11,6 @@ mod neck;
 mod pose;
 mod pose_predictor;
 
-pub use cadence::Cadence;
 pub use display::Display;
 pub use error::HeadError;
 pub use motion::HeadMotion;

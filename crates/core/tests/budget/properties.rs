@@ -157,6 +157,20 @@ fn a_transfer_function_that_triples_costs_misses_two_refreshes_at_most() {
 }
 
 #[test]
+fn a_view_that_supersedes_one_of_nothing_is_begun_with_few_cells() {
+    let mut schedule = CastSchedule::new(request(4), Predictor::Corrected);
+    while let Some(batch) = schedule.plan(0.009) {
+        schedule.record(&batch, &vec![1e-9; batch.cells().len()]).unwrap();
+    }
+    schedule.supersede(request(3));
+    let cells = request(3).grid().cells();
+    let first = schedule.plan(0.009).unwrap();
+    assert!(first.cells().len() <= cells.div_ceil(16), "{} of {cells}", first.cells().len());
+    schedule.record(&first, &vec![1.0; first.cells().len()]).unwrap();
+    assert_eq!(schedule.plan(0.009).unwrap().cells().len(), 1);
+}
+
+#[test]
 fn times_that_are_none_are_refused() {
     let mut schedule = CastSchedule::new(request(0), Predictor::Corrected);
     let batch = schedule.plan(1.0).unwrap();

@@ -110,6 +110,7 @@ impl Gpu {
             label: Some("wheatstone"),
             required_features: Capabilities::wanted_features() & adapter.features(),
             required_limits: adapter.limits(),
+            memory_hints: memory_hints(&description),
             ..Default::default()
         }))
         .map_err(|error| GpuError::Device { adapter: description.name.clone(), reason: error.to_string() })?;
@@ -218,6 +219,11 @@ impl Gpu {
             other => GpuError::Refused { reason: other.to_string() },
         })
     }
+}
+
+/// On software the device's memory is the program's: blocks of it that are mostly empty are not worth the allocations they spare.
+fn memory_hints(description: &AdapterDescription) -> wgpu::MemoryHints {
+    if description.is_software { wgpu::MemoryHints::MemoryUsage } else { wgpu::MemoryHints::Performance }
 }
 
 fn ranked_adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {

@@ -7,9 +7,6 @@ use crate::target::Target;
 use crate::tile_pass::TileList;
 use wgpu::BufferUsages;
 
-/// Targets kept that are in no picture.
-const MOST_TARGETS: usize = 6;
-
 /// Targets, tile lists and rays that are in no picture now: views in motion and at rest change between few sizes.
 #[derive(Debug, Default)]
 pub(super) struct Spares {
@@ -51,10 +48,18 @@ impl Spares {
     }
 
     pub(super) fn give_back_target(&mut self, target: Target) {
-        if self.targets.len() == MOST_TARGETS {
-            self.targets.remove(0);
-        }
         self.targets.push(target);
+    }
+
+    /// Lets go of the targets given back first until all have no more than a number of pixels together.
+    pub(super) fn keep_within(&mut self, most_px: u64) {
+        let mut px = 0;
+        let mut is_within = |target: &Target| {
+            px += target.size().map(u64::from).iter().product::<u64>();
+            px <= most_px
+        };
+        let kept = self.targets.iter().rev().take_while(|target| is_within(target)).count();
+        self.targets.drain(..self.targets.len() - kept);
     }
 
     pub(super) fn give_back_list(&mut self, list: TileList) {

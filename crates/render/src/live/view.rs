@@ -20,6 +20,10 @@ use wheatstone_core::view::View;
 /// Rays are not cast in shorter parts, seconds.
 const SHORTEST_PIECE_S: f64 = 0.004;
 
+/// Targets that are in no picture are kept up to the pixels of so many of full quality: those of all levels of a view that comes to
+/// rest have 1.6 times as many as the last.
+const SPARE_PICTURES: u64 = 2;
+
 /// Share of refreshes that may be late on software Vulkan, which shares the processor with all that runs besides.
 const MISSED_SHARE_OF_SOFTWARE: f64 = 0.02;
 
@@ -42,10 +46,14 @@ pub struct LiveView {
     coarser: HashMap<Quality, Arc<Prepared>>,
     /// Of the view that began last.
     last_quality: Quality,
+    /// Samples of the view that began last, as far as they depend on quality and settings.
+    last_work: f64,
     under_way: Option<UnderWay>,
     open: Option<OpenBatch>,
     flight: Option<Flight>,
     front: Option<Front>,
+    /// Set as long as the last cells of the front picture are in flight.
+    unproven: Option<Unproven>,
     spares: Spares,
     clock: PieceClock,
     uniforms: wgpu::Buffer,
@@ -70,7 +78,13 @@ struct Flight {
     submitted: Instant,
     budget_s: f64,
     is_first: bool,
-    completes_view: bool,
+}
+
+/// A front picture whose last cells may yet fail.
+#[derive(Debug)]
+struct Unproven {
+    /// What was shown before it.
+    before: Option<Front>,
 }
 
 impl LiveView {
@@ -106,10 +120,12 @@ impl LiveView {
             change: None,
             coarser: HashMap::new(),
             last_quality: Quality::COARSEST,
+            last_work: 1.0,
             under_way: None,
             open: None,
             flight: None,
             front: None,
+            unproven: None,
             spares: Spares::default(),
             clock,
             uniforms,
@@ -131,13 +147,13 @@ impl LiveView {
         Ok(())
     }
 
-    /// Other settings of the same volume, such as a transfer function: drops the picture under way, unless one has been
+    /// Other settings of the same volume, such as a transfer function or longer steps: drops the picture under way, unless one has been
     /// dropped since the last was complete, so that pictures are completed however often settings change.
     pub fn supersede(&mut self, settings: Arc<Prepared>) {
         self.want(self.wanted.with_settings(settings), Change::Settings);
     }
 
-    /// Another volume, or settings that take far more or less time: drops the picture under way and what is known of times.
+    /// Another volume, or settings with which a sample takes far more or less time: drops the picture under way and what is known of times.
     pub fn replace(&mut self, settings: Arc<Prepared>) {
         self.want(self.wanted.with_settings(settings), Change::Volume);
     }
@@ -156,8 +172,8 @@ impl LiveView {
     /// part of one; never waits.
     ///
     /// # Errors
-    /// No memory, a lost or hung device. The picture under way is then begun anew; one that may
-    /// be faulty is not shown.
+    /// No memory, a lost or hung device. The picture under way is then begun anew; in the
+    /// place of one that may be faulty the one before is shown.
     pub fn refresh(
         &mut self,
         gpu: &Gpu,
@@ -190,7 +206,7 @@ impl LiveView {
             measured = self.learn(&seconds)?;
         }
         if let Some(change) = self.change.take() {
-            self.apply(change)?;
+            self.apply(change, budget_s)?;
         }
         if let Some(idle) = self.plan(gpu, renderer, (budget_s - self.handing_over_s).max(0.0))? {
             return Ok(Refresh { activity: idle, measured });
@@ -211,8 +227,18 @@ impl LiveView {
         let (Some(flight), Some(open)) = (self.flight.take(), &mut self.open) else { return Ok(None) };
         open.add(&flight.places, seconds);
         self.close_batch()?;
+        self.prove_front();
         let Flight { budget_s, is_first, .. } = flight;
         Ok(Some(Measured { budget_s, cast_s: seconds.iter().sum(), is_first }))
+    }
+
+    /// The front picture's last cells are done: what was shown before is not needed any more.
+    fn prove_front(&mut self) {
+        let before = self.unproven.take().and_then(|unproven| unproven.before);
+        before
+            .into_iter()
+            .flat_map(|before| before.targets)
+            .for_each(|target| self.spares.give_back_target(target));
     }
 
     /// Tells the schedule what the cells of a batch took, if all of them are cast.
@@ -223,7 +249,7 @@ impl LiveView {
         Ok(())
     }
 
-    fn apply(&mut self, change: Change) -> Result<(), LiveError> {
+    fn apply(&mut self, change: Change, budget_s: f64) -> Result<(), LiveError> {
         let now_s = self.begun.elapsed().as_secs_f64();
         if change > Change::Pose {
             self.coarser.clear();
@@ -237,8 +263,10 @@ impl LiveView {
             }
             Change::Settings => self.schedule.supersede(request),
             Change::Pose => {
-                let is_too_fine = |control: &QualityControl| self.last_quality < control.in_motion();
-                if self.control.as_ref().is_some_and(is_too_fine) {
+                let view_s = self.view_s().unwrap_or(f64::NAN);
+                let is_too_fine =
+                    |control: &QualityControl| control.is_too_fine(self.last_quality, view_s, budget_s);
+                if self.schedule.back().is_some() && self.control.as_ref().is_some_and(is_too_fine) {
                     self.schedule.supersede(request);
                 }
             }
@@ -297,26 +325,32 @@ impl LiveView {
         if shown == Some(Quality::FULL) {
             return Ok(Some(Activity::Resting));
         }
-        let last_s = self.schedule.costs().view_s();
+        let s_per_work = self.schedule.costs().view_s().map(|view_s| view_s / self.last_work);
         let now_s = self.begun.elapsed().as_secs_f64();
+        let last_s = s_per_work.map(|s| s * self.wanted.with_quality(self.last_quality).work());
         let quality = self.control.as_mut().map_or(Quality::FULL, |control| {
             control.next(now_s, self.last_quality, last_s.unwrap_or(f64::NAN), budget_s)
         });
         if shown.is_some_and(|shown| shown <= quality) {
             return Ok(Some(Activity::Waiting));
         }
-        let work = |quality: Quality| quality.resolution().powi(2) * quality.work_per_pixel();
         let wanted = self.wanted.with_quality(quality);
-        let side = last_s.map_or(self.cell_sizes.first_side(), |last_s| {
-            let view_s = last_s * work(quality) / work(self.last_quality);
-            self.cell_sizes.side(wanted.covered_px(), view_s, budget_s)
+        let work = wanted.work();
+        let side = s_per_work.map_or(self.cell_sizes.first_side(), |s| {
+            self.cell_sizes.side(wanted.covered_px(), s * work, budget_s)
         });
         let (request, cells) = request(&wanted, side)?;
         let prepared = self.prepared(gpu, renderer, quality)?;
+        self.spares.keep_within(SPARE_PICTURES * self.wanted.full_px());
         let view = UnderWay::new(gpu, renderer, &mut self.spares, wanted, cells, prepared)?;
         self.under_way = Some(view);
-        self.schedule.aim(request);
+        if self.front.as_ref().is_some_and(|front| self.wanted.is_far_from(&front.wanted)) {
+            self.schedule.supersede(request);
+        } else {
+            self.schedule.aim(request);
+        }
         self.last_quality = quality;
+        self.last_work = work;
         Ok(None)
     }
 
@@ -366,16 +400,17 @@ impl LiveView {
             let is_first = open.batch.expected_s().is_infinite();
             let submitted = Instant::now();
             self.clock.begin_reading(gpu, places.len());
-            self.flight = Some(Flight { places, submitted, budget_s, is_first, completes_view });
+            self.flight = Some(Flight { places, submitted, budget_s, is_first });
         }
         if completes_view {
             let whole = self.under_way.take().map(|view| view.complete(&mut self.spares));
-            let old = std::mem::replace(&mut self.front, whole);
-            old.into_iter()
-                .flat_map(|old| old.targets)
-                .for_each(|target| self.spares.give_back_target(target));
+            let before = std::mem::replace(&mut self.front, whole);
+            self.unproven = Some(Unproven { before });
         }
         gpu.check()?;
+        if self.flight.is_none() {
+            self.prove_front();
+        }
         Ok(Activity::Casting { cells, completes_view })
     }
 
@@ -385,8 +420,9 @@ impl LiveView {
         self.open = None;
         self.spares = Spares::default();
         self.clock = PieceClock::new(gpu);
-        if self.flight.take().is_some_and(|flight| flight.completes_view) {
-            self.front = None;
+        self.flight = None;
+        if let Some(unproven) = self.unproven.take() {
+            self.front = unproven.before;
         }
         self.change = Some(Change::Volume);
     }
@@ -395,6 +431,5 @@ impl LiveView {
 /// The request of a picture of cells with sides of so many pixels or more, and its cells.
 fn request(wanted: &Wanted, side: u32) -> Result<(ViewRequest<Wanted>, RigCells), LiveError> {
     let cells = RigCells::new(wanted.size(), wanted.eyes(), side)?;
-    let work_per_pixel = wanted.quality.work_per_pixel();
-    Ok((ViewRequest::new(wanted.clone(), cells.grid(), work_per_pixel)?, cells))
+    Ok((ViewRequest::new(wanted.clone(), cells.grid(), wanted.work_per_pixel())?, cells))
 }

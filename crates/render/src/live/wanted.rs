@@ -3,9 +3,16 @@
 use super::LiveError;
 use crate::renderer::Prepared;
 use crate::target::check_size;
+use glam::DQuat;
 use std::sync::Arc;
 use wheatstone_core::budget::Quality;
 use wheatstone_core::view::{PixelRect, View};
+
+/// Way of an eye after which a picture tells little about what the next one takes, metres.
+const FAR_M: f64 = 0.25;
+
+/// Cosine of half of a turn after which it tells little: 20°.
+const FAR_HALF_TURN_COS: f64 = 0.985;
 
 /// All that tells one picture from another: the views of a rig, the settings with their volume, and how coarse it is.
 #[derive(Debug, Clone)]
@@ -41,6 +48,16 @@ impl Wanted {
         self.views == other.views && Arc::ptr_eq(&self.settings, &other.settings)
     }
 
+    /// Whether some eye is so far from where it was, or looks elsewhere, that other parts of the volume may be seen.
+    pub(super) fn is_far_from(&self, other: &Self) -> bool {
+        let is_far = |(a, b): (&View, &View)| {
+            let [a, b] = [a, b].map(|view| view.view_from_world.inverse());
+            let turn = DQuat::from_mat3(&(a.matrix3 * b.matrix3.transpose()));
+            a.translation.distance(b.translation) > FAR_M || turn.w.abs() < FAR_HALF_TURN_COS
+        };
+        self.eyes() != other.eyes() || self.views.iter().zip(&other.views).any(is_far)
+    }
+
     pub(super) fn with_quality(&self, quality: Quality) -> Self {
         Self { quality, ..self.clone() }
     }
@@ -52,6 +69,21 @@ impl Wanted {
     /// Width and height of each view in pixels, at its quality.
     pub(super) fn size(&self) -> [u32; 2] {
         self.quality.size(self.views[0].size)
+    }
+
+    /// Samples of a pixel, as far as they depend on quality and settings.
+    pub(super) fn work_per_pixel(&self) -> f64 {
+        self.quality.work_per_pixel() * f64::from(self.settings.parameters.sampling_factor)
+    }
+
+    /// Samples of a view of a full size, likewise.
+    pub(super) fn work(&self) -> f64 {
+        self.quality.resolution().powi(2) * self.work_per_pixel()
+    }
+
+    /// Pixels of all views at full quality.
+    pub(super) fn full_px(&self) -> u64 {
+        self.views.iter().map(|view| view.size.map(u64::from).iter().product::<u64>()).sum()
     }
 
     pub(super) fn eyes(&self) -> usize {

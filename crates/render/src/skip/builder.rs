@@ -100,14 +100,6 @@ impl SkipBuilder {
         self.passes.as_ref().map_or(0, |passes| passes.distances.field().layout.byte_size() as u64)
     }
 
-    /// Makes room to work a structure out, unless there is.
-    ///
-    /// # Errors
-    /// More blocks than the device can hold, no memory, a lost device.
-    pub fn reserve(&mut self, gpu: &Gpu, structure: Structure) -> Result<(), GpuError> {
-        self.take_passes(gpu, structure).map(|passes| self.passes = Some(passes))
-    }
-
     fn take_passes(&mut self, gpu: &Gpu, structure: Structure) -> Result<Passes, GpuError> {
         if let Some(passes) = self.passes.take()
             && passes.distances.fits(structure)

@@ -10,7 +10,6 @@ mod builder;
 mod distance;
 mod field;
 mod kernels;
-mod live;
 mod occupancy;
 mod skip_map;
 mod table;
@@ -20,7 +19,6 @@ pub use block_ranges::GpuBlockRanges;
 pub(crate) use block_ranges::VoxelTexture;
 pub use builder::SkipBuilder;
 pub use kernels::SkipKernels;
-pub use live::LiveSkipMap;
 pub use skip_map::GpuSkipMap;
 pub use wheatstone_core::skip::Structure;
 

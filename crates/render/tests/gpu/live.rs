@@ -197,3 +197,41 @@ fn a_device_that_is_gone_is_lost_at_every_refresh() {
         assert!((0..3).all(|_| is_lost(&refresh())));
     });
 }
+
+#[test]
+fn a_picture_that_may_be_faulty_gives_way_to_the_one_before() {
+    on_device(|shared, _| {
+        let is_same = |description: &AdapterDescription| description == shared.description();
+        let gpu = Gpu::open(is_same).unwrap();
+        let mut renderer = Renderer::new(&gpu).unwrap();
+        let settings = prepared(&gpu, &mut renderer, |_| {});
+        let [first, second] = [[30, 20], [40, 40]].map(|size| view(size, DVec3::Z));
+        let mut live = LiveView::new(&gpu, settings, &[first], None).unwrap();
+        let fail = |renderer: &mut Renderer, live: &mut LiveView| {
+            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: 4,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE,
+                mapped_at_creation: false,
+            });
+            let refused = live.refresh(&gpu, renderer, PLENTY);
+            assert!(matches!(refused, Err(LiveError::Gpu(GpuError::Refused { .. }))), "{refused:?}");
+        };
+        let shown =
+            |live: &LiveView| live.front().and_then(|front| front.pictures().map(|(_, view)| view).next());
+        complete(&gpu, &mut renderer, &mut live, PLENTY);
+        fail(&mut renderer, &mut live);
+        assert_eq!(shown(&live), None);
+        complete(&gpu, &mut renderer, &mut live, PLENTY);
+        live.refresh(&gpu, &mut renderer, PLENTY).unwrap();
+        live.aim(&[second]).unwrap();
+        complete(&gpu, &mut renderer, &mut live, PLENTY);
+        assert_eq!(shown(&live), Some(second));
+        fail(&mut renderer, &mut live);
+        assert_eq!(shown(&live), Some(first));
+        assert_whole(&gpu, &mut renderer, &live);
+        complete(&gpu, &mut renderer, &mut live, PLENTY);
+        assert_eq!(shown(&live), Some(second));
+        assert_whole(&gpu, &mut renderer, &live);
+    });
+}

@@ -11,7 +11,7 @@ use wheatstone_core::skip::{
 };
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::volume::{Encoding, Grid, StorageKind, StoredVoxels, Volume, VoxelType, Voxels};
-use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, LiveSkipMap, SkipBuilder, SkipKernels};
+use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, SkipBuilder, SkipKernels};
 use wheatstone_render::{Gpu, GpuError, GpuGradientMap, GpuVolume, TexelFormat};
 
 const STRUCTURES: [Structure; 3] = [Structure::Occupancy, Structure::Distance, Structure::Anisotropic];
@@ -260,52 +260,6 @@ fn an_updated_map_is_a_new_one() {
                 let expected = SkipMap::new(&occupancy, map.structure());
                 assert!(map.read(gpu).unwrap() == expected.distances(), "{:?}", map.structure());
             }
-        }
-    });
-}
-
-#[test]
-fn a_live_map_is_quick_while_settings_change_and_better_once_they_rest() {
-    let volume = sparse_volume([37, 30, 41], VoxelType::U8, 0.02, 7);
-    let settings = |lo| {
-        let transfer = visible_between(lo, lo + 0.2);
-        parameters(&volume, &Settings::new(volume.full_window(), transfer))
-    };
-    on_device(|gpu, _| {
-        let kernels = SkipKernels::new(gpu).unwrap();
-        let uploaded = upload(gpu, &volume, TexelFormat::R16FloatOf8Bit);
-        let block_size = BlockSize::cube(4).ok();
-        let plan = |skip, host| {
-            let request = SkipRequest { skip, block_size };
-            request.plan(volume.grid().dims(), StorageKind::U8, host).unwrap()
-        };
-        let auto = plan(Skip::Auto, gpu.capabilities().skip_host());
-        let builder = || SkipBuilder::new(gpu, &kernels, &uploaded, auto.block_size).unwrap();
-        let expected = |parameters: &CastParameters, structure| {
-            builder().map(gpu, parameters, structure).unwrap().read(gpu).unwrap()
-        };
-        let first = settings(0.1);
-        let mut live = LiveSkipMap::new(gpu, builder(), auto, &first).unwrap();
-        assert_eq!(live.map().read(gpu).unwrap(), expected(&first, Structure::Distance));
-        for lo in [0.3, 0.5, 0.7] {
-            let dragged = settings(lo);
-            live.edit(gpu, &dragged).unwrap();
-            assert_eq!(live.map().read(gpu).unwrap(), expected(&dragged, Structure::Distance), "{lo}");
-            live.settle(gpu, &dragged).unwrap();
-            assert_eq!(live.map().read(gpu).unwrap(), expected(&dragged, Structure::Anisotropic), "{lo}");
-        }
-        // 10 × 8 × 11 blocks: ranges of 4 bytes, maps of 1 and 8, and eight octants of a row within 256 bytes.
-        assert_eq!(live.byte_size(), 880 * (4 + 1 + 8) + 256 * 8 * 11);
-
-        // Too deep for the octants of an anisotropic map.
-        let shallow = SkipHost::Gpu { largest_side: 87, largest_buffer: usize::MAX };
-        let (one_map, by_name) = (plan(Skip::Auto, shallow), plan(Skip::Occupancy, shallow));
-        for (plan, structure) in [(one_map, Structure::Distance), (by_name, Structure::Occupancy)] {
-            let mut live = LiveSkipMap::new(gpu, builder(), plan, &first).unwrap();
-            assert_eq!(live.map().read(gpu).unwrap(), expected(&first, structure));
-            let dragged = settings(0.6);
-            live.settle(gpu, &dragged).unwrap();
-            assert_eq!(live.map().read(gpu).unwrap(), expected(&dragged, structure));
         }
     });
 }

@@ -1,5 +1,6 @@
 //! What is shown at which refresh, in real time.
 
+use super::aim::{Aim, AimName};
 use super::timeline::{Pace, Refresh};
 use crate::backend::LiveEngine;
 use crate::failure::Failure;
@@ -143,7 +144,7 @@ fn complete(engine: &mut LiveEngine<'_>, live: &mut LiveView) -> Result<f64, Fai
 /// are cast, and each refresh is waited for.
 pub(super) fn refreshes(
     engine: &mut LiveEngine<'_>,
-    motion: &HeadMotion,
+    (motion, aim): (&HeadMotion, AimName),
     like: &View,
     pace: &Pace,
     case: String,
@@ -159,10 +160,11 @@ pub(super) fn refreshes(
     let (mut shown, mut picture) = (Vec::new(), 0);
     let start = Instant::now();
     let mut refresh = 0.0;
+    let mut aim = Aim::new(aim, motion);
     while refresh * period_s <= motion.duration_s() {
         let begins_s = refresh * period_s;
         sleep_until(start, begins_s);
-        live.aim(&[motion.eyes_at(begins_s + ahead_s).view(like)])?;
+        live.aim(&[aim.eyes_at(begins_s + ahead_s, begins_s)?.view(like)])?;
         let warp_begins_s = begins_s + pace.available_s();
         let left_s = (warp_begins_s - start.elapsed().as_secs_f64()).max(0.0);
         let done = live.refresh(engine.gpu, engine.renderer, Duration::from_secs_f64(left_s))?;

@@ -43,6 +43,7 @@ pub(super) fn run(
         warp_ms: Vec::new(),
         cast_ms: Vec::new(),
         missed,
+        pose_off: session.refreshes.iter().map(pose_off).collect(),
         worst: None,
     };
     let mut traces: Vec<Trace> = session.warps.iter().map(new_trace).collect();
@@ -73,6 +74,12 @@ pub(super) fn run(
         bar.advance();
     }
     Ok(traces)
+}
+
+/// How far the eyes have turned from where the picture was cast for, degrees, and moved, millimetres.
+fn pose_off(refresh: &Refresh) -> [f64; 2] {
+    let Refresh { eyes, cast_from, .. } = refresh;
+    [eyes.angle_to_rad(cast_from).to_degrees(), 1e3 * eyes.distance_to_m(cast_from)]
 }
 
 impl Trace {

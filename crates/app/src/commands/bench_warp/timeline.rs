@@ -1,5 +1,6 @@
 //! What is shown at which refresh, in simulated time.
 
+use super::aim::{Aim, AimName};
 use crate::failure::Failure;
 use wheatstone_core::budget::{CastSchedule, CellGrid, Predictor, ViewRequest};
 use wheatstone_core::head::{Display, HeadMotion, Pose};
@@ -45,8 +46,14 @@ pub(super) struct Refresh {
 
 /// The refreshes of a motion, from the one at which it begins to the one after it has ended, for pictures of a size in pixels. All
 /// before is rest. A picture is cast for the pose at which it will be shown first, if nothing takes longer than it is expected
-/// to (VR §6.2: prediction is optimal).
-pub(super) fn refreshes(motion: &HeadMotion, pace: &Pace, size: [u32; 2]) -> Result<Vec<Refresh>, Failure> {
+/// to, as far as that pose is known.
+pub(super) fn refreshes(
+    motion: &HeadMotion,
+    aim: AimName,
+    pace: &Pace,
+    size: [u32; 2],
+) -> Result<Vec<Refresh>, Failure> {
+    let mut aim = Aim::new(aim, motion);
     let cell_side_px = size[0].max(size[1]).div_ceil(CELLS_PER_SIDE).next_multiple_of(CELL_STEP_PX);
     let grid = CellGrid::new(size, cell_side_px).map_err(Failure::input)?;
     let period_s = pace.display.period_s();
@@ -65,7 +72,7 @@ pub(super) fn refreshes(motion: &HeadMotion, pace: &Pace, size: [u32; 2]) -> Res
     let mut refresh = warm_up;
     while (refresh - 1.0) * period_s <= motion.duration_s() {
         let begins_s = refresh * period_s;
-        schedule.aim(request(motion.eyes_at(begins_s + refreshes_of_cast * period_s))?);
+        schedule.aim(request(aim.eyes_at(begins_s + refreshes_of_cast * period_s, begins_s)?)?);
         let mut is_missed = false;
         let mut completes = false;
         if let Some(batch) = schedule.plan(available_s) {
@@ -99,15 +106,15 @@ mod tests {
         HeadMotion::new(eyes, 0.5, 0.2).unwrap()
     }
 
-    fn timeline(render_s: f64) -> Vec<Refresh> {
+    fn timeline(aim: AimName, render_s: f64) -> Vec<Refresh> {
         let pace = Pace { display: Display::default(), render_s, reserve_s: 0.002 };
-        refreshes(&motion(), &pace, [256, 192]).unwrap()
+        refreshes(&motion(), aim, &pace, [256, 192]).unwrap()
     }
 
     #[test]
     fn a_motion_begins_and_ends_at_rest() {
         for render_s in [0.001, 0.02, 0.05] {
-            let all = timeline(render_s);
+            let all = timeline(AimName::Known, render_s);
             assert!((90..94).contains(&all.len()), "{}", all.len());
             assert_eq!(all[0].eyes, motion().eyes_at(0.0));
             assert_eq!(all.last().unwrap().eyes, motion().eyes_at(1.0));
@@ -118,7 +125,7 @@ mod tests {
     #[test]
     fn pictures_are_shown_as_long_as_casting_takes() {
         let pictures = |render_s| {
-            let all = timeline(render_s);
+            let all = timeline(AimName::Known, render_s);
             all.last().unwrap().picture - all[0].picture
         };
         assert!(pictures(0.004) >= 88);
@@ -127,8 +134,19 @@ mod tests {
     }
 
     #[test]
+    fn pictures_are_shown_first_where_they_were_aimed_at() {
+        let worst_off_m = |aim| {
+            let all = timeline(aim, 0.03);
+            let first_shown = all.windows(2).filter(|pair| pair[0].picture != pair[1].picture);
+            first_shown.map(|pair| pair[1].eyes.distance_to_m(&pair[1].cast_from)).fold(0.0, f64::max)
+        };
+        let [known_m, predicted_m] = [AimName::Known, AimName::Predicted].map(worst_off_m);
+        assert!(known_m < 0.004 && (0.001..0.008).contains(&predicted_m), "{known_m} {predicted_m}");
+    }
+
+    #[test]
     fn what_is_simulated_is_repeatable() {
-        let [a, b] = [0, 1].map(|_| format!("{:?}", timeline(0.03)));
+        let [a, b] = [0, 1].map(|_| format!("{:?}", timeline(AimName::Predicted, 0.03)));
         assert_eq!(a, b);
     }
 }

@@ -20,6 +20,9 @@ pub(super) struct Trace {
     /// Of true renders.
     pub(super) cast_ms: Vec<f64>,
     pub(super) missed: usize,
+    /// How far the eyes have turned from where the displayed picture was cast for, and moved, at each refresh: degrees and
+    /// millimetres.
+    pub(super) pose_off: Vec<[f64; 2]>,
     pub(super) worst: Option<Worst>,
 }
 
@@ -45,6 +48,11 @@ impl Trace {
         self.dssim.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max)
     }
 
+    /// The furthest that the eyes have turned from where the displayed picture was cast for, and moved.
+    fn pose_off_worst(&self) -> [f64; 2] {
+        [0, 1].map(|part| self.pose_off.iter().map(|off| off[part]).fold(0.0, f64::max))
+    }
+
     pub(super) fn to_json(&self) -> Value {
         json!({
             "volume": self.volume,
@@ -56,19 +64,33 @@ impl Trace {
             "warp_ms": median(&self.warp_ms),
             "cast_ms": median(&self.cast_ms),
             "missed": self.missed,
+            "turn_off_deg_worst": self.pose_off_worst()[0],
+            "way_off_mm_worst": self.pose_off_worst()[1],
             "trace": self.dssim,
+            "pose_off_trace": self.pose_off,
         })
     }
 }
 
 pub(super) fn to_table(traces: &[Trace]) -> String {
     let mut lines = vec![format!(
-        "{:<14} {:<12} {:<10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}",
-        "volume", "motion", "warp", "DSSIM", "worst", "drop", "warp ms", "cast ms", "missed"
+        "{:<14} {:<12} {:<10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6}",
+        "volume",
+        "motion",
+        "warp",
+        "DSSIM",
+        "worst",
+        "drop",
+        "warp ms",
+        "cast ms",
+        "missed",
+        "off °",
+        "off mm"
     )];
     for trace in traces {
+        let [turn_deg, way_mm] = trace.pose_off_worst();
         lines.push(format!(
-            "{:<14} {:<12} {:<10} {:>8.5} {:>8.5} {:>8.5} {:>8.2} {:>8.2} {:>6}",
+            "{:<14} {:<12} {:<10} {:>8.5} {:>8.5} {:>8.5} {:>8.2} {:>8.2} {:>6} {:>6.2} {:>6.1}",
             trace.volume,
             trace.motion.name(),
             trace.warp.name(),
@@ -78,6 +100,8 @@ pub(super) fn to_table(traces: &[Trace]) -> String {
             median(&trace.warp_ms),
             median(&trace.cast_ms),
             trace.missed,
+            turn_deg,
+            way_mm,
         ));
     }
     lines.join("\n")

@@ -40,9 +40,9 @@ impl Default for Look {
 }
 
 impl Look {
-    /// What decides how long a cast takes: mode, shading, samples per voxel length.
-    pub(crate) fn cost(&self) -> (ModeName, Shading, f64) {
-        (self.mode, self.shading, self.sampling_factor)
+    /// What decides how long a sample takes.
+    pub(crate) fn mode_and_shading(&self) -> (ModeName, Shading) {
+        (self.mode, self.shading)
     }
 
     pub(super) fn check(&self) -> Result<(), String> {

@@ -3,7 +3,7 @@
 use super::projection::Projection;
 use super::theme::{ACCENT, LINE};
 use super::{Asked, Shown};
-use crate::viewer::state::{Arrangement, Edit, Plane};
+use crate::viewer::state::{Arrangement, Edit, Plane, State};
 use egui::{Color32, Painter, Pos2, Rect, Response, Stroke, Ui, Vec2};
 use glam::{DAffine3, DVec3};
 
@@ -18,9 +18,9 @@ const NORMAL_M: f64 = 0.25;
 /// Half of the side of the square that shows the plane, metres.
 const HALF_PLANE_M: f64 = 0.5;
 
-/// The handle that is being dragged.
+/// The handle that is being dragged, and in which of the pictures.
 #[derive(Debug, Default)]
-pub(super) struct Grip(Option<Handle>);
+pub(super) struct Grip(Option<(usize, Handle)>);
 
 /// What can be dragged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,14 +43,11 @@ pub(super) fn show(
     asked: &mut Asked,
 ) -> bool {
     let clip = &shown.state.clip;
-    let is_one_picture = shown.state.stereo.arrangement != Arrangement::SideBySide;
-    let size = [area.width().max(1.0) as u32, area.height().max(1.0) as u32];
-    let (Some(placement), Ok(view)) = (shown.placement, shown.state.camera.view(size)) else { return false };
-    if !(clip.has_handles && is_one_picture) {
+    let projections = projections(shown.state, area);
+    let Some(placement) = shown.placement.filter(|_| clip.has_handles && !projections.is_empty()) else {
         grip.0 = None;
         return false;
-    }
-    let projection = Projection::new(view, area);
+    };
     let world_from_texture = placement.world_from_texture();
     let faces = [0, 1, 2, 3, 4, 5].map(|face| face_centre(clip.box_lo, clip.box_hi, face));
     let mut handles: Vec<(Handle, DVec3)> = faces
@@ -62,47 +59,68 @@ pub(super) fn show(
         let [foot, tip] = foot_and_tip(&plane);
         handles.extend([(Handle::Foot, foot), (Handle::Tip, tip)]);
     }
-    let under = picture.hover_pos().and_then(|pointer| nearest(&projection, &handles, pointer));
+    let under = picture.hover_pos().and_then(|pointer| nearest(&projections, &handles, pointer));
     if picture.drag_started() {
         // By now the pointer may have moved on.
         let origin = ui.input(|input| input.pointer.press_origin());
-        grip.0 = origin.and_then(|origin| nearest(&projection, &handles, origin));
+        grip.0 = origin.and_then(|origin| nearest(&projections, &handles, origin));
     }
     if !picture.dragged() {
         grip.0 = None;
     }
-    let painter = ui.painter_at(area);
-    draw_box(&painter, &projection, world_from_texture, [clip.box_lo, clip.box_hi]);
-    if let Some(plane) = clip.plane {
-        draw_plane(&painter, &projection, &plane);
-    }
-    for &(handle, place_m) in &handles {
-        if let Some(place) = projection.place(place_m) {
-            let is_active = grip.0 == Some(handle) || under == Some(handle);
-            let fill = if is_active { ACCENT } else { Color32::from_black_alpha(160) };
-            painter.circle(place, RADIUS, fill, Stroke::new(1.5, ACCENT));
+    for (eye, projection) in projections.iter().enumerate() {
+        let painter = ui.painter_at(projection.area());
+        draw_box(&painter, projection, world_from_texture, [clip.box_lo, clip.box_hi]);
+        if let Some(plane) = clip.plane {
+            draw_plane(&painter, projection, &plane);
+        }
+        for &(handle, place_m) in &handles {
+            if let Some(place) = projection.place(place_m) {
+                let is_active = [grip.0, under].contains(&Some((eye, handle)));
+                let fill = if is_active { ACCENT } else { Color32::from_black_alpha(160) };
+                painter.circle(place, RADIUS, fill, Stroke::new(1.5, ACCENT));
+            }
         }
     }
-    let Some(held) = grip.0 else { return false };
+    let Some((eye, held)) = grip.0 else { return false };
     let by = picture.drag_delta();
-    if by != Vec2::ZERO {
+    if let Some(projection) = projections.get(eye).filter(|_| by != Vec2::ZERO) {
         let moved = match held {
-            Handle::Face(face) => drag_face(&projection, world_from_texture, faces[face], face, by),
-            Handle::Foot => clip.plane.and_then(|plane| drag_foot(&projection, plane, by)),
-            Handle::Tip => clip.plane.and_then(|plane| drag_tip(&projection, plane, by)),
+            Handle::Face(face) => drag_face(projection, world_from_texture, faces[face], face, by),
+            Handle::Foot => clip.plane.and_then(|plane| drag_foot(projection, plane, by)),
+            Handle::Tip => clip.plane.and_then(|plane| drag_tip(projection, plane, by)),
         };
         moved.into_iter().for_each(|edit| asked.edit(edit));
     }
     true
 }
 
-fn nearest(projection: &Projection, handles: &[(Handle, DVec3)], pointer: Pos2) -> Option<Handle> {
+/// What shows the handles: the picture of each eye side by side, or the view from the middle between them.
+fn projections(state: &State, area: Rect) -> Vec<Projection> {
+    let size = [area.width().max(1.0) as u32, area.height().max(1.0) as u32];
+    let Ok(middle) = state.camera.view(state.stereo.eye_size(size)) else { return Vec::new() };
+    if state.stereo.arrangement != Arrangement::SideBySide {
+        return vec![Projection::new(middle, area)];
+    }
+    let (left, right) = area.split_left_right_at_fraction(0.5);
+    let views = state.stereo.views(&middle, state.camera.distance_m);
+    views.into_iter().zip([left, right]).map(|(view, half)| Projection::new(view, half)).collect()
+}
+
+/// The handle within reach of the pointer, and in which picture.
+fn nearest(
+    projections: &[Projection],
+    handles: &[(Handle, DVec3)],
+    pointer: Pos2,
+) -> Option<(usize, Handle)> {
+    let (eye, projection) =
+        projections.iter().enumerate().find(|(_, projection)| projection.area().contains(pointer))?;
     handles
         .iter()
         .filter_map(|&(handle, place_m)| Some((handle, projection.place(place_m)?.distance(pointer))))
         .filter(|&(_, distance)| distance < REACH)
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(handle, _)| handle)
+        .map(|(handle, _)| (eye, handle))
 }
 
 /// The middle of a face, texture space.
@@ -203,6 +221,24 @@ mod tests {
         };
         let after = projection.place(world.transform_point3(DVec3 { y: to, ..centre })).unwrap();
         assert!(to < 1.0 && ((after - before).y - 40.0).abs() < 6.0, "{to} {before:?} {after:?}");
+    }
+
+    #[test]
+    fn side_by_side_each_eye_has_handles_in_its_half() {
+        let area = Rect::from_min_size(pos2(20.0, 10.0), vec2(600.0, 300.0));
+        let mut state = State::default();
+        assert_eq!(projections(&state, area).len(), 1);
+        state.stereo.arrangement = Arrangement::SideBySide;
+        let eyes = projections(&state, area);
+        let handle = (Handle::Foot, DVec3::new(0.0, 0.0, 0.4));
+        let places: Vec<Pos2> = eyes.iter().map(|eye| eye.place(handle.1).unwrap()).collect();
+        let [left, right] = [places[0].x - 20.0, places[1].x - 320.0];
+        assert!((150.0..300.0).contains(&left) && (0.0..150.0).contains(&right), "nearer: {places:?}");
+        for (eye, place) in places.into_iter().enumerate() {
+            let beside = place + vec2(3.0, -3.0);
+            assert_eq!(nearest(&eyes, &[handle], beside), Some((eye, Handle::Foot)));
+        }
+        assert_eq!(nearest(&eyes, &[handle], area.center()), None);
     }
 
     #[test]

@@ -37,9 +37,10 @@ pub(super) fn show(desk: &mut Desk, ui: &mut Ui, area: Rect, shown: &Shown<'_>, 
         }
     }
     held_keys(ui, shown, asked);
-    let dropped = ui.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
-    if let Some(path) = dropped {
-        asked.command(Command::Open(path));
+    let dropped: Vec<_> =
+        ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+    if !dropped.is_empty() {
+        asked.command(Command::Drop(dropped));
     }
 }
 

@@ -19,6 +19,10 @@ impl Projection {
         Self { view, area }
     }
 
+    pub(super) fn area(&self) -> Rect {
+        self.area
+    }
+
     /// Place of a world point, points; none behind the eye.
     pub(super) fn place(&self, world_m: DVec3) -> Option<Pos2> {
         let p = self.view.view_from_world.transform_point3(world_m);
