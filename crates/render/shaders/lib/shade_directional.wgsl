@@ -9,15 +9,15 @@ const SHADING_IS_DEAR = true;
 fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
     var lit = vec3f(0.0);
     var unoccluded = vec3f(0.0);
-    for (var i = 0u; i < parameters.direction_count; i++) {
+    // Software Vulkan compiles a kernel anew for each dispatch where a uniform alone decides; no ray without samples is shaded.
+    let count = select(parameters.direction_count, 0u, ray.sample_count == 0u);
+    for (var i = 0u; i < count; i++) {
         let direction = parameters.directions[i].xyz;
         let step = parameters.texture_from_metric * (direction * SHADING_STEP);
         let log2_transmittance = log2_transmittance_of_four(position, step);
         lit += abs(direction) * exp2(log2_transmittance * SHADING_STEP);
         unoccluded += abs(direction);
     }
-    if parameters.direction_count == 0u {
-        return classified.entry.rgb;
-    }
-    return classified.entry.rgb * lit / max(unoccluded, vec3f(1e-6));
+    let share = select(lit / max(unoccluded, vec3f(1e-6)), vec3f(1.0), count == 0u);
+    return classified.entry.rgb * share;
 }
