@@ -94,6 +94,11 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
         self.aim(request);
     }
 
+    /// Casting the complete picture has failed: it is not shown, and cast again if it is still wanted.
+    pub fn forget_front(&mut self) {
+        self.front = None;
+    }
+
     /// The complete picture: what is shown, warped to the newest pose.
     pub fn front(&self) -> Option<&ViewRequest<C>> {
         self.front.as_ref()

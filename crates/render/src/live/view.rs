@@ -423,6 +423,7 @@ impl LiveView {
         self.flight = None;
         if let Some(unproven) = self.unproven.take() {
             self.front = unproven.before;
+            self.schedule.forget_front();
         }
         self.change = Some(Change::Volume);
     }

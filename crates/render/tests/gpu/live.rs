@@ -208,7 +208,7 @@ fn a_picture_that_may_be_faulty_gives_way_to_the_one_before() {
         let [first, second] = [[30, 20], [40, 40]].map(|size| view(size, DVec3::Z));
         let mut live = LiveView::new(&gpu, settings, &[first], None).unwrap();
         let fail = |renderer: &mut Renderer, live: &mut LiveView| {
-            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            let _invalid = gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: None,
                 size: 4,
                 usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE,

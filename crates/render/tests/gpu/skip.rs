@@ -6,11 +6,10 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::scene::{GradientMethod, Mode, Settings};
 use wheatstone_core::skip::{
-    BlockGrid, BlockRanges, BlockSize, Occupancy, RangeCodes, Skip, SkipHost, SkipMap, SkipRequest,
-    Structure, Visibility,
+    BlockGrid, BlockRanges, BlockSize, Occupancy, RangeCodes, SkipMap, Structure, Visibility,
 };
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
-use wheatstone_core::volume::{Encoding, Grid, StorageKind, StoredVoxels, Volume, VoxelType, Voxels};
+use wheatstone_core::volume::{Encoding, Grid, StoredVoxels, Volume, VoxelType, Voxels};
 use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, SkipBuilder, SkipKernels};
 use wheatstone_render::{Gpu, GpuError, GpuGradientMap, GpuVolume, TexelFormat};
 

@@ -141,7 +141,7 @@ mod tests {
             first_shown.map(|pair| pair[1].eyes.distance_to_m(&pair[1].cast_from)).fold(0.0, f64::max)
         };
         let [known_m, predicted_m] = [AimName::Known, AimName::Predicted].map(worst_off_m);
-        assert!(known_m < 0.004 && (0.001..0.008).contains(&predicted_m), "{known_m} {predicted_m}");
+        assert!(known_m < 1e-9 && (0.0005..0.002).contains(&predicted_m), "{known_m} {predicted_m}");
     }
 
     #[test]
