@@ -8,7 +8,7 @@ import package::lib::view::{view};
 
 // What rays that end leave out of the derived picture.
 
-// Opacity in front of what is missing from which on it is not missed: less than a tenth of the light.
+// Opacity of a derived pixel from which on what is missing is not missed: it lets less than a tenth of the light through.
 const HIDING_ALPHA: f32 = 0.9;
 
 // A bit for each derived column of a row of a strip that a ray would have gone on to, with less than that in front by then.

@@ -1,3 +1,4 @@
+import package::lib::cuts::{HIDING_ALPHA};
 import package::lib::merged::{Merged, merged_at};
 import package::lib::merged_tile::{TILES, tile_of_invocation};
 import package::lib::target::{store};
@@ -10,9 +11,6 @@ import package::lib::view::{view};
 const BLANK_TILE: f32 = 0.0;
 const DERIVED_TILE: f32 = 1.0;
 const CUT_TILE: f32 = 2.0;
-
-// Opacity of a derived pixel below which it is a gap if rays have left out what it needs: it lets half of the light through.
-const GAP_ALPHA: f32 = 0.5;
 
 // Of each tile: the sums of its pixels' grey levels and of their squares, the mean square of how much changes from column to
 // column change, and what is in it.
@@ -46,7 +44,7 @@ fn merge_and_measure(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
             let bend = before.pixel.color.rgb + after.pixel.color.rgb - 2.0 * here.pixel.color.rgb;
             bends += dot(bend, bend) / 3.0;
             alpha += here.pixel.color.a;
-            is_cut |= here.is_cut && here.pixel.color.a < GAP_ALPHA;
+            is_cut |= here.is_cut && here.pixel.color.a < HIDING_ALPHA;
             before = here;
             here = after;
         }
