@@ -186,6 +186,19 @@ impl CastParameters {
         }
     }
 
+    /// The same for a coarser level of the volume: as many samples per voxel, which is 2ˡ times as long.
+    #[must_use]
+    pub fn of_level(&self, level: usize) -> Self {
+        let sampling_factor = self.sampling_factor * (-(level as f32)).exp2();
+        Self { sampling_factor, ..self.clone() }
+    }
+
+    /// One voxel length, metres.
+    pub fn voxel_length_m(&self) -> f64 {
+        let world_from_texture = self.texture_from_world.inverse().matrix3;
+        world_from_texture.x_axis.length() / f64::from(self.metric_from_texture.x_axis.length())
+    }
+
     /// The corners of the visible box, world space, metres.
     pub fn visible_corners_world(&self) -> [DVec3; 8] {
         self.corners_world(self.box_lo, self.box_hi)

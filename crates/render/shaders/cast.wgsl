@@ -20,7 +20,7 @@ fn cast_rays(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
     }
     let slot = (pixel.y - view.first_row) * view.width + pixel.x;
     begin_layers(pixel);
-    var state = begin_ray(ray, slot);
+    var state = begin_ray(ray, pixel, slot);
     let end = min(ray.sample_count, view.first_sample + view.sample_limit);
     if state.is_finished == 0u && view.first_sample < end {
         state = accumulate(ray, view.first_sample, end, state);

@@ -34,6 +34,7 @@ pub(crate) struct Variant {
     resume: &'static str,
     tiles: &'static str,
     record: &'static str,
+    front: &'static str,
 }
 
 impl Variant {
@@ -83,7 +84,17 @@ impl Variant {
                 Tiles::Listed => TILES_LISTED,
             },
             record: RECORD_NONE,
+            front: FRONT_NONE,
         }
+    }
+
+    /// The kernel of a composite that goes on behind what its target holds: it leaves pixels as they are whose rays miss.
+    pub(crate) fn behind(self) -> Self {
+        Self { front: FRONT_PICTURE, tiles: TILES_ALL, ..self }
+    }
+
+    pub(crate) fn is_behind(self) -> bool {
+        self.front == FRONT_PICTURE
     }
 
     /// The kernel that keeps layers of emission and absorption beside the picture.
@@ -150,6 +161,7 @@ impl Variant {
                             resume,
                             tiles,
                             record: RECORD_NONE,
+                            front: FRONT_NONE,
                         });
                     }
                     let (accumulator, classifier) = ("lib/accumulate_first_hit", "lib/classify_isovalue");
@@ -165,6 +177,7 @@ impl Variant {
                         resume,
                         tiles,
                         record: RECORD_NONE,
+                        front: FRONT_NONE,
                     });
                 }
             }
@@ -184,6 +197,7 @@ impl Variant {
                     resume,
                     tiles,
                     record: RECORD_NONE,
+                    front: FRONT_NONE,
                 });
             }
         }
@@ -206,20 +220,20 @@ impl Variant {
         };
         let on_quads: Vec<Self> = all.iter().map(on_quads).collect();
         all.extend(on_quads);
-        let with_layers = |variant: &&Self| {
+        let is_composite = |variant: &&Self| {
             variant.accumulator == COMPOSITE
                 && variant.gradient != gradients[1]
                 && variant.tiles == TILES_LISTED
         };
-        let with_layers: Vec<Self> =
-            all.iter().filter(with_layers).map(|variant| variant.with_layers()).collect();
-        all.extend(with_layers);
+        let composites: Vec<Self> = all.iter().filter(is_composite).copied().collect();
+        all.extend(composites.iter().map(|variant| variant.with_layers()));
+        all.extend(composites.iter().map(|variant| variant.behind()));
         let in_parts: Vec<Self> = all.iter().map(|variant| variant.in_parts()).collect();
         all.extend(in_parts);
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 13] {
+    fn choices(&self) -> [(&'static str, &'static str); 14] {
         let (cast_segments, join) = match self.accumulator {
             XRAY => ("lib/cast_integrals", "lib/join_sum"),
             _ => ("lib/cast_segments", "lib/join_over"),
@@ -236,6 +250,7 @@ impl Variant {
             ("lib/resume", self.resume),
             ("lib/tiles", self.tiles),
             ("lib/record", self.record),
+            ("lib/front", self.front),
             ("lib/cast_segments", cast_segments),
             ("lib/join", join),
         ]
@@ -251,6 +266,8 @@ const TILES_ALL: &str = "lib/tiles_all";
 const TILES_LISTED: &str = "lib/tiles_listed";
 const RECORD_NONE: &str = "lib/record_none";
 const RECORD_LAYERS: &str = "lib/record_layers";
+const FRONT_NONE: &str = "lib/front_none";
+const FRONT_PICTURE: &str = "lib/front_picture";
 const SKIP_NONE: &str = "lib/skip_none";
 const SKIP_BLOCKS: &str = "lib/skip_blocks";
 const COMPOSITE: &str = "lib/accumulate_composite";
@@ -415,7 +432,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 512);
+        assert_eq!(variants.len(), 592);
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub(crate) struct GroupLayouts {
     pub(crate) frame: wgpu::BindGroupLayout,
     /// Volume, tables and maps.
     pub(crate) volume: wgpu::BindGroupLayout,
-    /// Picture, rays under way, listed tiles and layers.
+    /// Picture, rays under way, listed tiles, layers and the picture in front.
     pub(crate) target: wgpu::BindGroupLayout,
 }
 
@@ -37,6 +37,11 @@ impl GroupLayouts {
             texture_3d(wgpu::TextureSampleType::Uint),
             texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
         ];
+        let picture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
         let target = [
             storage_texture(wgpu::TextureFormat::Rgba32Float),
             storage_texture(wgpu::TextureFormat::Rgba32Float),
@@ -44,6 +49,8 @@ impl GroupLayouts {
             storage_buffer(0),
             storage_buffer(8),
             storage_texture_array(wgpu::TextureFormat::Rgba32Uint),
+            picture,
+            picture,
         ];
         Self {
             frame: layout(device, "frame", &[uniform::<CastUniform>(), uniform::<ViewUniform>()]),

@@ -56,6 +56,8 @@ pub struct Renderer {
     no_map: wgpu::TextureView,
     /// Stands where a cast keeps no layers.
     no_layers: wgpu::Texture,
+    /// Copy of the picture that the last cast went on behind.
+    front: Target,
     /// Stand where a cast keeps no rays and lists no tiles.
     pub(crate) unused: [wgpu::Buffer; 2],
     pacer: Pacer,
@@ -139,6 +141,7 @@ impl Renderer {
             })
             .create_view(&wgpu::TextureViewDescriptor::default());
         let no_layers = target_texture(gpu, "no layers", wgpu::TextureFormat::Rgba32Uint, [1, 1], 1);
+        let front = Target::new(gpu, [1, 1])?;
         let unused =
             [(); 2].map(|()| storage(&gpu.device, "unused", RAY_STATE_BYTES, wgpu::BufferUsages::empty()));
         gpu.check()?;
@@ -159,6 +162,7 @@ impl Renderer {
             unused,
             no_map,
             no_layers,
+            front,
             pacer: Pacer::new(),
         })
     }
@@ -256,6 +260,31 @@ impl Renderer {
             variant,
             iterations_per_sample: prepared.iterations_per_sample + cast_pass::ITERATIONS_OF_RECORDING,
             cast_uniform,
+            view_uniform,
+            frame,
+            volume: prepared.volume.clone(),
+            ..*prepared
+        })
+    }
+
+    /// The same of a composite, cast behind what targets hold: each ray goes on with what its pixel has gathered. For the slabs of
+    /// a level of detail but the nearest (`Caster::cast_behind`).
+    ///
+    /// # Errors
+    /// A kernel that the driver refuses, no memory, a lost device.
+    ///
+    /// # Panics
+    /// If another mode than composites was prepared.
+    pub fn behind(&mut self, gpu: &Gpu, prepared: &Prepared) -> Result<Prepared, GpuError> {
+        assert_eq!(prepared.parameters.mode, Mode::Composite, "only composites are cast behind anything");
+        let variant = prepared.variant.behind();
+        self.casts.pipeline(gpu, variant)?;
+        let (view_uniform, frame) = self.frame(gpu, &prepared.cast_uniform);
+        gpu.check()?;
+        Ok(Prepared {
+            parameters: prepared.parameters.clone(),
+            variant,
+            lists_tiles: false,
             view_uniform,
             frame,
             volume: prepared.volume.clone(),
@@ -387,7 +416,7 @@ impl Renderer {
         self.layer_passes.entry((format, quality)).or_insert_with(make)
     }
 
-    /// The bindings of a target, of the rays that are kept and of the tiles that are listed.
+    /// The bindings of a target, of the rays that are kept, of the tiles that are listed and of what is in front.
     pub(crate) fn target_group(
         &self,
         gpu: &Gpu,
@@ -408,6 +437,8 @@ impl Renderer {
                     dimension: Some(wgpu::TextureViewDimension::D2Array),
                     ..Default::default()
                 })),
+                wgpu::BindingResource::TextureView(&view(&self.front.color)),
+                wgpu::BindingResource::TextureView(&view(&self.front.depth)),
             ],
         )
     }
@@ -417,6 +448,18 @@ impl Renderer {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         target.blank(&mut encoder, &self.zeros, next);
         gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Keeps what a target holds for a cast behind it, which draws over other squares as well.
+    fn keep_front(&mut self, gpu: &Gpu, target: &mut Target, next: &Squares) -> Result<(), GpuError> {
+        if self.front.size() != target.size() {
+            self.front = Target::new(gpu, target.size())?;
+        }
+        target.drawn = target.drawn.around(next);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        target.copy_drawn(&mut encoder, &self.front);
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
     }
 
     /// Casts one view piece by piece: rows, and for rays that are too long for one dispatch ranges of samples.
@@ -436,6 +479,12 @@ impl Renderer {
         let iterations = prepared.iterations_per_sample;
         let may_be_split = sample_limit(most_samples, iterations, 1.0) != u32::MAX;
         let kept_rows = if may_be_split { state_rows } else { BAND_ROWS };
+        let covered = Squares::covered(view, &parameters.occupied_corners_world());
+        if prepared.variant.is_behind() {
+            self.keep_front(gpu, target, &covered)?;
+        } else {
+            self.blank(gpu, target, &covered);
+        }
         let states = self.states(gpu, state_row_bytes * u64::from(kept_rows));
         let kept_list = self.tile_list.take();
         let list = prepared.lists_tiles.then(|| self.tile_pass.list(&gpu.device, view.size, kept_list));
@@ -448,9 +497,7 @@ impl Renderer {
         let reads = cast_pass::reads_per_sample(parameters);
         let bands = band_samples(parameters, view);
         let bands_with_states = if may_be_split { state_rows / BAND_ROWS } else { u32::MAX };
-        let covered = Squares::covered(view, &parameters.occupied_corners_world());
         let mut piece = ViewUniform::of_squares(parameters, view, &covered);
-        self.blank(gpu, target, &covered);
         if let Some(list) = &list {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             list.begin_picture(&mut encoder);

@@ -112,6 +112,26 @@ impl Target {
         PixelRect { columns: pixels(&self.drawn.columns, width), rows: pixels(&self.drawn.bands, height) }
     }
 
+    /// Encodes a copy of what has been drawn to another target of the same size.
+    pub(crate) fn copy_drawn(&self, encoder: &mut wgpu::CommandEncoder, to: &Self) {
+        let PixelRect { columns, rows } = self.drawn_pixels();
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        let origin = wgpu::Origin3d { x: columns.start, y: rows.start, z: 0 };
+        for (from, to) in [(&self.color, &to.color), (&self.depth, &to.depth)] {
+            encoder.copy_texture_to_texture(
+                wgpu::TexelCopyTextureInfo { origin, ..from.as_image_copy() },
+                wgpu::TexelCopyTextureInfo { origin, ..to.as_image_copy() },
+                wgpu::Extent3d {
+                    width: columns.len() as u32,
+                    height: rows.len() as u32,
+                    depth_or_array_layers: 1,
+                },
+            );
+        }
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size

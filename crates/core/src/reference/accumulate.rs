@@ -1,6 +1,7 @@
 //! Accumulators: from the samples of a packet of rays to pixels.
 
 use super::context::Context;
+use super::gathered::Gathered;
 use super::lanes::Lanes;
 use super::ray::Ray;
 use super::vector::Vec3;
@@ -27,6 +28,7 @@ pub(super) struct Taken<L> {
 
 /// A way from samples to pixels.
 pub(super) trait Accumulate {
-    /// Casts the rays of a packet. What becomes of rays without samples does not matter.
-    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L>;
+    /// Casts the rays of a packet; composites, behind what is in front of them. What becomes of rays without samples does not
+    /// matter.
+    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, front: Gathered<L>) -> Pixels<L>;
 }

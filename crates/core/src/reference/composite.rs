@@ -16,13 +16,16 @@ pub(super) struct Composite<C>(PhantomData<C>);
 
 impl<C: Classify> Accumulate for Composite<C> {
     #[inline(always)]
-    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
+    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, front: Gathered<L>) -> Pixels<L> {
         let least_transmittance = L::splat(token, 1.0 - context.parameters.termination_alpha);
-        let mut gathered = Gathered::nothing(token);
+        let mut gathered = front;
+        let has_ended = gathered.transmittance.le(least_transmittance);
+        let mut ray = *ray;
+        ray.sample_count = L::select(has_ended, L::splat(token, 0.0), ray.sample_count);
         let taken = each_visible::<C, L>(
             context,
             token,
-            ray,
+            &ray,
             #[inline(always)]
             |sample| {
                 gathered.add(token, sample.rgb, sample.transmittance);

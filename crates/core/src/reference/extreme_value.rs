@@ -2,6 +2,7 @@
 
 use super::accumulate::{Accumulate, Pixels, Taken};
 use super::context::Context;
+use super::gathered::Gathered;
 use super::lanes::{Lanes, Mask};
 use super::lut::lut_at;
 use super::ray::Ray;
@@ -47,7 +48,7 @@ impl Better for Minimum {
 
 impl<B: Better> Accumulate for ExtremeValue<B> {
     #[inline(always)]
-    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
+    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, _: Gathered<L>) -> Pixels<L> {
         match context.extremes {
             None => Self::project(context, token, ray, Walk::along(token, ray, context.skip)),
             Some(extremes) => {

@@ -3,6 +3,7 @@
 use super::accumulate::{Accumulate, Pixels, Taken};
 use super::classify::{Classify, Isovalue};
 use super::context::Context;
+use super::gathered::Gathered;
 use super::lanes::{Lanes, Mask};
 use super::ray::Ray;
 use super::shade::shade;
@@ -16,7 +17,7 @@ pub(super) struct FirstHit;
 
 impl Accumulate for FirstHit {
     #[inline(always)]
-    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
+    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, _: Gathered<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let isovalue = L::splat(token, context.parameters.isovalue);
         let mut was_in = isovalue.le(context.value_at_outlined(token, ray.at(L::splat(token, -0.5))));

@@ -27,6 +27,17 @@ impl<L: Lanes> Gathered<L> {
         }
     }
 
+    /// What pixels have gathered: their premultiplied colours and depths.
+    #[inline(always)]
+    pub(super) fn of(token: L::Token, pixels: &[([f32; 4], f32)]) -> Self {
+        let channel = |c: usize| L::from_fn(token, |lane| f64::from(pixels[lane].0[c]));
+        Self {
+            rgb: Vec3 { x: channel(0), y: channel(1), z: channel(2) },
+            transmittance: L::splat(token, 1.0) - channel(3),
+            depth_m: L::from_fn(token, |lane| f64::from(pixels[lane].1)),
+        }
+    }
+
     /// Adds a sample behind what has been gathered.
     #[inline(always)]
     pub(super) fn add(&mut self, token: L::Token, rgb: Vec3<L>, transmittance: L) {

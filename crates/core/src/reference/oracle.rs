@@ -3,6 +3,7 @@
 use super::accumulate::{Accumulate, Pixels, Taken};
 use super::classify::Classify;
 use super::context::Context;
+use super::gathered::Gathered;
 use super::lanes::{Lanes, Mask};
 use super::ray::Ray;
 use super::skip::Walk;
@@ -15,7 +16,7 @@ pub(super) struct Oracle<C>(PhantomData<C>);
 
 impl<C: Classify> Accumulate for Oracle<C> {
     #[inline(always)]
-    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
+    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, _: Gathered<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let mut walk = Walk::along(token, ray, context.skip);
         let least_transmittance = L::splat(token, 1.0 - context.parameters.termination_alpha);

@@ -7,6 +7,7 @@ use super::composite::Composite;
 use super::context::Context;
 use super::extreme_value::{ExtremeValue, Maximum, Minimum};
 use super::first_hit::FirstHit;
+use super::gathered::Gathered;
 use super::gradient_map::HeldGradientMap;
 use super::lanes::{Lanes, MOST_LANES};
 use super::lanes_exact::Exact;
@@ -53,6 +54,13 @@ pub struct Reads {
 }
 
 impl Cast {
+    /// A transparent picture whose rays have read nothing.
+    pub fn nothing([width, height]: [u32; 2]) -> Self {
+        let image = Image::transparent(width, height);
+        let reads = vec![Reads::default(); image.color.len()];
+        Self { image, samples: 0, map_reads: 0, reads }
+    }
+
     /// A picture whose rays have read what is given.
     pub fn new(image: Image, reads: Vec<Reads>) -> Self {
         let total = |of_ray: fn(&Reads) -> u32| reads.iter().map(|ray| u64::from(of_ray(ray))).sum();
@@ -81,17 +89,33 @@ impl Caster {
     /// # Panics
     /// If rays are to leap by the extremes of another mode.
     pub fn cast(&self, parameters: &CastParameters, aids: &Aids<'_>, views: &[View]) -> Vec<Cast> {
+        let of_view = |view: &View| self.cast_behind(parameters, aids, view, Cast::nothing(view.size));
+        views.iter().map(of_view).collect()
+    }
+
+    /// The same of one view, behind a picture of what is nearer if it is a composite: rays go on with what they have gathered.
+    ///
+    /// # Panics
+    /// As [`Caster::cast`], and if the picture has another size than the view.
+    pub fn cast_behind(
+        &self,
+        parameters: &CastParameters,
+        aids: &Aids<'_>,
+        view: &View,
+        front: Cast,
+    ) -> Cast {
+        let context = self.context(parameters, aids);
         if u32::try_from(self.voxels.len()).is_err() {
-            return self.cast_exactly(parameters, aids, views);
+            return cast_view(OneByOne, &context, view, front);
         }
         match Level::new() {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx512(simd) => self.cast_on(Wide(simd), parameters, aids, views),
+            Level::Avx512(simd) => cast_view(Wide(simd), &context, view, front),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx2(simd) => self.cast_on(Wide(simd), parameters, aids, views),
+            Level::Avx2(simd) => cast_view(Wide(simd), &context, view, front),
             #[cfg(target_arch = "aarch64")]
-            Level::Neon(simd) => self.cast_on(Wide(simd), parameters, aids, views),
-            _ => self.cast_exactly(parameters, aids, views),
+            Level::Neon(simd) => cast_view(Wide(simd), &context, view, front),
+            _ => cast_view(OneByOne, &context, view, front),
         }
     }
 
@@ -100,7 +124,8 @@ impl Caster {
     /// # Panics
     /// As [`Caster::cast`].
     pub fn cast_exactly(&self, parameters: &CastParameters, aids: &Aids<'_>, views: &[View]) -> Vec<Cast> {
-        self.cast_on(OneByOne, parameters, aids, views)
+        let context = self.context(parameters, aids);
+        views.iter().map(|view| cast_view(OneByOne, &context, view, Cast::nothing(view.size))).collect()
     }
 
     /// What rays must read at the least, whatever the structure: every visible sample, and one read of a map for each run of
@@ -112,22 +137,14 @@ impl Caster {
         view: &View,
     ) -> Cast {
         let context = self.context(parameters, &Aids { gradient_map, leap: Leap::Nothing });
+        let front = Cast::nothing(view.size);
         match parameters.classifier {
-            Classifier::ValueGradient => cast_bands::<Oracle<ValueGradient>>(OneByOne, &context, view),
-            Classifier::PreIntegrated => cast_bands::<Oracle<PreIntegrated>>(OneByOne, &context, view),
-            Classifier::Value | Classifier::Isovalue => cast_bands::<Oracle<Value>>(OneByOne, &context, view),
+            Classifier::ValueGradient => cast_bands::<Oracle<ValueGradient>>(OneByOne, &context, view, front),
+            Classifier::PreIntegrated => cast_bands::<Oracle<PreIntegrated>>(OneByOne, &context, view, front),
+            Classifier::Value | Classifier::Isovalue => {
+                cast_bands::<Oracle<Value>>(OneByOne, &context, view, front)
+            }
         }
-    }
-
-    fn cast_on(
-        &self,
-        path: impl Path,
-        parameters: &CastParameters,
-        aids: &Aids<'_>,
-        views: &[View],
-    ) -> Vec<Cast> {
-        let context = self.context(parameters, aids);
-        views.iter().map(|view| cast_view(path, &context, view)).collect()
     }
 
     pub(super) fn context<'a>(&'a self, parameters: &'a CastParameters, aids: &Aids<'a>) -> Context<'a> {
@@ -187,30 +204,29 @@ struct Band<'a> {
     reads: &'a mut [Reads],
 }
 
-fn cast_view(path: impl Path, context: &Context<'_>, view: &View) -> Cast {
+fn cast_view(path: impl Path, context: &Context<'_>, view: &View, front: Cast) -> Cast {
     match (context.parameters.mode, context.parameters.classifier) {
         (Mode::Composite, Classifier::ValueGradient) => {
-            cast_bands::<Composite<ValueGradient>>(path, context, view)
+            cast_bands::<Composite<ValueGradient>>(path, context, view, front)
         }
         (Mode::Composite, Classifier::PreIntegrated) => {
-            cast_bands::<Composite<PreIntegrated>>(path, context, view)
+            cast_bands::<Composite<PreIntegrated>>(path, context, view, front)
         }
-        (Mode::Composite, _) => cast_bands::<Composite<Value>>(path, context, view),
-        (Mode::Mip, _) => cast_bands::<ExtremeValue<Maximum>>(path, context, view),
-        (Mode::MinIp, _) => cast_bands::<ExtremeValue<Minimum>>(path, context, view),
-        (Mode::Mean, _) => cast_bands::<ValueSum<Mean>>(path, context, view),
-        (Mode::XRay, _) => cast_bands::<ValueSum<XRay>>(path, context, view),
-        (Mode::Isosurface { .. }, _) => cast_bands::<FirstHit>(path, context, view),
+        (Mode::Composite, _) => cast_bands::<Composite<Value>>(path, context, view, front),
+        (Mode::Mip, _) => cast_bands::<ExtremeValue<Maximum>>(path, context, view, front),
+        (Mode::MinIp, _) => cast_bands::<ExtremeValue<Minimum>>(path, context, view, front),
+        (Mode::Mean, _) => cast_bands::<ValueSum<Mean>>(path, context, view, front),
+        (Mode::XRay, _) => cast_bands::<ValueSum<XRay>>(path, context, view, front),
+        (Mode::Isosurface { .. }, _) => cast_bands::<FirstHit>(path, context, view, front),
     }
 }
 
-fn cast_bands<A: Accumulate>(path: impl Path, context: &Context<'_>, view: &View) -> Cast {
+fn cast_bands<A: Accumulate>(path: impl Path, context: &Context<'_>, view: &View, front: Cast) -> Cast {
     let rays = RayField::new(view, context.parameters.texture_from_world);
-    let [width, height] = view.size;
-    let mut image = Image::transparent(width, height);
-    let (rows, width) = (path.band_rows(), width as usize);
+    let Cast { mut image, mut reads, .. } = front;
+    assert_eq!([image.width, image.height], view.size, "the picture in front has the size of the view");
+    let (rows, width) = (path.band_rows(), image.width as usize);
     let [hit_columns, hit_rows] = pixels_of_box(&rays, context.parameters, view.size);
-    let mut reads = vec![Reads::default(); image.color.len()];
     let bands = image
         .color
         .par_chunks_mut(rows * width)
@@ -237,19 +253,23 @@ fn cast_packets<A: Accumulate, L: Lanes>(
     let dims = context.sampler.dims().as_dvec3();
     for left in band.columns.clone().step_by(columns) {
         let mut packet = [PixelRay::default(); MOST_LANES];
+        let mut front = [([0.0; 4], f32::INFINITY); MOST_LANES];
         let mut is_hit = false;
         for row in 0..rows.min(band.color.len() / band.width) {
             for column in 0..columns.min(band.width - left) {
                 let (x, y) = ((left + column) as f64 + 0.5, (band.top + row) as f64 + 0.5);
                 let ray = PixelRay::new(rays, context.parameters, x, y);
                 is_hit |= ray.sample_count > 0;
-                packet[row * columns + column] = ray;
+                let (lane, pixel) = (row * columns + column, row * band.width + left + column);
+                packet[lane] = ray;
+                front[lane] = (band.color[pixel], band.depth_m[pixel]);
             }
         }
         if !is_hit {
             continue;
         }
-        let pixels = A::cast::<L>(context, token, &Ray::new(token, dims, &packet));
+        let ray = Ray::new(token, dims, &packet);
+        let pixels = A::cast::<L>(context, token, &ray, Gathered::of(token, &front));
         let [r, g, b] = [pixels.rgb.x, pixels.rgb.y, pixels.rgb.z].map(L::to_array);
         let (alpha, depth_m) = (pixels.alpha.to_array(), pixels.depth_m.to_array());
         let (samples, map_reads) = (pixels.taken.samples.to_array(), pixels.taken.map_reads.to_array());
@@ -257,7 +277,8 @@ fn cast_packets<A: Accumulate, L: Lanes>(
             let pixel = lane / columns * band.width + left + lane % columns;
             band.color[pixel] = [r[lane], g[lane], b[lane], alpha[lane]];
             band.depth_m[pixel] = depth_m[lane];
-            band.reads[pixel] = Reads { samples: samples[lane] as u32, map_reads: map_reads[lane] as u32 };
+            band.reads[pixel].samples += samples[lane] as u32;
+            band.reads[pixel].map_reads += map_reads[lane] as u32;
         }
     }
 }

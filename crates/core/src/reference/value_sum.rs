@@ -2,6 +2,7 @@
 
 use super::accumulate::{Accumulate, Pixels, Taken};
 use super::context::Context;
+use super::gathered::Gathered;
 use super::lanes::{Lanes, Mask};
 use super::lut::lut_at;
 use super::ray::Ray;
@@ -38,7 +39,7 @@ impl Projection for XRay {
 
 impl<P: Projection> Accumulate for ValueSum<P> {
     #[inline(always)]
-    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>) -> Pixels<L> {
+    fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, _: Gathered<L>) -> Pixels<L> {
         let mut sum = L::splat(token, 0.0);
         let taken = each_value(
             context,

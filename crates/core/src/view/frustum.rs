@@ -1,5 +1,6 @@
 //! Projections: a frustum of four tangents, or an orthographic box.
 
+use std::ops::Range;
 use thiserror::Error;
 
 /// A perspective pyramid: tangents of the angles from −Z to its four sides, as `OpenXR` gives them.
@@ -121,6 +122,17 @@ impl Projection {
         match self {
             Self::Perspective(f) => (f.near_m, f.far_m),
             Self::Orthographic(o) => (o.near_m, o.far_m),
+        }
+    }
+
+    /// The same with no other depths than some, metres.
+    #[must_use]
+    pub fn within(self, depths_m: &Range<f64>) -> Self {
+        let (near_m, far_m) = self.depth_range_m();
+        let (near_m, far_m) = (near_m.max(depths_m.start), far_m.min(depths_m.end));
+        match self {
+            Self::Perspective(f) => Self::Perspective(Frustum { near_m, far_m, ..f }),
+            Self::Orthographic(o) => Self::Orthographic(OrthographicBox { near_m, far_m, ..o }),
         }
     }
 }

@@ -60,7 +60,7 @@ impl View {
         let of_picture = match self.projection {
             Projection::Perspective(f) => {
                 let depth_m = -at.z;
-                if depth_m <= f.near_m.max(f64::MIN_POSITIVE) {
+                if depth_m < f64::MIN_POSITIVE {
                     return None;
                 }
                 let (x, y) = (at.x / depth_m, at.y / depth_m);

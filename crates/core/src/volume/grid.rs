@@ -69,6 +69,16 @@ impl Grid {
         )
     }
 
+    /// As many voxels as given, over the same part of space.
+    ///
+    /// # Errors
+    /// As [`Grid::new`].
+    pub fn resampled(&self, dims: [usize; 3]) -> Result<Self, GridError> {
+        let voxel_from_resampled = self.dims_vec() / DVec3::from(dims.map(|side| side as f64));
+        let patient_from_voxel = self.patient_from_voxel() * DAffine3::from_scale(voxel_from_resampled);
+        Self::new(dims, patient_from_voxel * DAffine3::from_translation(DVec3::splat(0.5)))
+    }
+
     /// Number of voxels along each axis, the fastest first.
     pub fn dims(&self) -> [usize; 3] {
         self.dims

@@ -1,6 +1,7 @@
 //! A volume: typed voxels on a grid that knows where it lies in the patient.
 
 mod grid;
+mod halved;
 mod statistics;
 mod storage;
 mod stored_slices;

@@ -8,13 +8,21 @@ use std::ops::Range;
 pub trait Voxel: Copy + Send + Sync + bytemuck::Pod {
     /// The value as f64, exact for every supported type.
     fn to_f64(self) -> f64;
+
+    /// The value of the type that is nearest to a number.
+    fn nearest(value: f64) -> Self;
 }
 
 macro_rules! voxel_types {
-    ($($variant:ident, $type:ty, $name:literal;)*) => {
+    ($($variant:ident, $type:ty, $name:literal, $round:expr;)*) => {
         $(impl Voxel for $type {
             fn to_f64(self) -> f64 {
                 f64::from(self)
+            }
+
+            fn nearest(value: f64) -> Self {
+                let round: fn(f64) -> f64 = $round;
+                round(value) as Self
             }
         })*
 
@@ -112,6 +120,14 @@ macro_rules! voxel_types {
                 }
             }
 
+            /// So many voxels of the same type, each nearest to what a function makes of its index, in parallel.
+            pub(super) fn of_same_type(&self, count: usize, f: impl Fn(usize) -> f64 + Sync + Send) -> Self {
+                let indices = (0..count).into_par_iter();
+                match self {
+                    $(Self::$variant(_) => Self::$variant(indices.map(|i| <$type>::nearest(f(i))).collect()),)*
+                }
+            }
+
             /// Smallest and largest finite value; `None` if no value is finite. Beyond ±1e300 counts as infinite.
             pub fn finite_range(&self) -> Option<(f64, f64)> {
                 match self {
@@ -123,14 +139,14 @@ macro_rules! voxel_types {
 }
 
 voxel_types! {
-    U8, u8, "uint8";
-    I8, i8, "int8";
-    U16, u16, "uint16";
-    I16, i16, "int16";
-    U32, u32, "uint32";
-    I32, i32, "int32";
-    F32, f32, "float32";
-    F64, f64, "float64";
+    U8, u8, "uint8", f64::round;
+    I8, i8, "int8", f64::round;
+    U16, u16, "uint16", f64::round;
+    I16, i16, "int16", f64::round;
+    U32, u32, "uint32", f64::round;
+    I32, i32, "int32", f64::round;
+    F32, f32, "float32", |x| x;
+    F64, f64, "float64", |x| x;
 }
 
 impl Voxels {

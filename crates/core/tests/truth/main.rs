@@ -5,6 +5,7 @@
 
 mod analytic;
 mod clipping;
+mod detail;
 mod gradients;
 mod lanes;
 mod oracle;

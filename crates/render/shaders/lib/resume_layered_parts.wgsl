@@ -1,4 +1,4 @@
-import package::lib::accumulate::{start_ray};
+import package::lib::front::{start_behind};
 import package::lib::ray::{Ray};
 import package::lib::ray_state::{RayState};
 import package::lib::record::{OpenLayer, open_layer};
@@ -12,10 +12,10 @@ struct LayeredRay {
     layer: OpenLayer,
 }
 
-fn begin_ray(ray: Ray, slot: u32) -> RayState {
+fn begin_ray(ray: Ray, pixel: vec2u, slot: u32) -> RayState {
     // As in `resume_parts`.
     if view.first_sample == u32(slot == 0xffffffffu) {
-        return start_ray(ray);
+        return start_behind(ray, pixel);
     }
     open_layer = states[slot].layer;
     return states[slot].state;

@@ -40,6 +40,8 @@ files! {
     "lib/depth_range",
     "lib/extreme_value",
     "lib/field",
+    "lib/front_none",
+    "lib/front_picture",
     "lib/gradient_central",
     "lib/gradient_central_quads",
     "lib/gradient_tetrahedron",

@@ -5,6 +5,7 @@
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "all of this crate is test code")]
 
 mod bounds;
+mod detail;
 mod device;
 mod errors;
 mod layers;
