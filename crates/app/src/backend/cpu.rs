@@ -6,6 +6,7 @@ use std::convert::Infallible;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::reference::{Aids, Cast, Caster, HeldGradientMap, Leap};
 use wheatstone_core::scene::GradientMethod;
@@ -23,6 +24,8 @@ pub(crate) struct CpuEngine<'v> {
     gradients: Option<Rc<Gradients>>,
     scenes: Vec<Scene>,
     casts: Vec<Cast>,
+    /// Coarser levels of the volume.
+    coarser: Vec<Self>,
     pub(super) upload: Duration,
 }
 
@@ -32,6 +35,14 @@ struct Scene {
     gradients: Option<Rc<Gradients>>,
     structures: Structures,
     leaping: Leaping,
+    detail: Option<Detail>,
+}
+
+/// What is far away.
+struct Detail {
+    level_of_detail: LevelOfDetail,
+    /// Settings for the coarser levels, each of its own engine.
+    coarser: Vec<Shot>,
 }
 
 /// What rays leap over.
@@ -65,7 +76,37 @@ impl<'v> CpuEngine<'v> {
         let start = Instant::now();
         let caster = Caster::with_storage(volume, storage);
         let upload = start.elapsed();
-        Self { volume, storage, caster, gradients: None, scenes: Vec::new(), casts: Vec::new(), upload }
+        Self {
+            volume,
+            storage,
+            caster,
+            gradients: None,
+            scenes: Vec::new(),
+            casts: Vec::new(),
+            coarser: Vec::new(),
+            upload,
+        }
+    }
+
+    /// Holds coarser levels of the volume.
+    pub(super) fn add_levels(&mut self, coarser: &'v [Volume]) {
+        let storage = self.storage;
+        self.coarser.extend(coarser.iter().map(|volume| Self::new(volume, storage)));
+    }
+
+    pub(super) fn prepare_detail(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+        level_of_detail: LevelOfDetail,
+    ) -> Shot {
+        let coarser = (1..)
+            .zip(&mut self.coarser)
+            .map(|(level, engine)| engine.prepare(&parameters.of_level(level), skipping))
+            .collect();
+        let shot = self.prepare(parameters, skipping);
+        self.scenes[shot.0].detail = Some(Detail { level_of_detail, coarser });
+        shot
     }
 
     pub(super) fn prepare(&mut self, parameters: &CastParameters, skipping: &Skipping) -> Shot {
@@ -74,7 +115,8 @@ impl<'v> CpuEngine<'v> {
             None => (Structures::Nothing, Leaping::NOTHING),
             Some(plan) => self.structures(parameters, gradients.as_deref(), &plan),
         };
-        self.scenes.push(Scene { parameters: parameters.clone(), gradients, structures, leaping });
+        let parameters = parameters.clone();
+        self.scenes.push(Scene { parameters, gradients, structures, leaping, detail: None });
         Shot(self.scenes.len() - 1)
     }
 
@@ -155,8 +197,25 @@ impl<'v> CpuEngine<'v> {
     pub(super) fn cast(&mut self, shot: Shot, views: &[View]) -> Duration {
         let scene = &self.scenes[shot.0];
         let start = Instant::now();
-        self.casts = self.caster.cast(&scene.parameters, &scene.aids(), views);
+        self.casts = match &scene.detail {
+            None => self.caster.cast(&scene.parameters, &scene.aids(), views),
+            Some(detail) => views.iter().map(|view| self.cast_detail(scene, detail, view)).collect(),
+        };
         start.elapsed()
+    }
+
+    fn cast_detail(&self, scene: &Scene, detail: &Detail, view: &View) -> Cast {
+        let slabs = detail.level_of_detail.slabs(view, &scene.parameters, 1 + self.coarser.len());
+        slabs.iter().fold(Cast::nothing(view.size), |front, slab| {
+            let (engine, scene) = match slab.level.checked_sub(1) {
+                None => (self, scene),
+                Some(coarser) => {
+                    let engine = &self.coarser[coarser];
+                    (engine, &engine.scenes[detail.coarser[coarser].0])
+                }
+            };
+            engine.caster.cast_behind(&scene.parameters, &scene.aids(), &slab.part_of(view), front)
+        })
     }
 
     pub(super) fn read(&mut self) -> Vec<Cast> {

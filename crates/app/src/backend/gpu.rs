@@ -11,6 +11,7 @@ use crate::skipping::Skipping;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{GradientMethod, Mode};
@@ -29,7 +30,8 @@ use wheatstone_render::{
 pub(crate) struct GpuEngine {
     pub(super) gpu: Gpu,
     renderer: Renderer,
-    volume: GpuVolume,
+    /// The volume, and its coarser levels if there are any.
+    levels: Vec<GpuVolume>,
     storage: StorageKind,
     kernels: Option<SkipKernels>,
     gradient_map: Option<((GradientMethod, GradientDepth), GpuGradientMap)>,
@@ -45,6 +47,19 @@ struct Scene {
     prepared: Arc<Prepared>,
     gradient_map: Option<GradientMapSize>,
     leaping: Leaping,
+    detail: Option<Detail>,
+}
+
+/// What is far away.
+struct Detail {
+    level_of_detail: LevelOfDetail,
+    coarser: Vec<CoarserLevel>,
+}
+
+/// Settings for a coarser level: as the nearest slab, and behind nearer ones.
+struct CoarserLevel {
+    alone: Arc<Prepared>,
+    behind: Prepared,
 }
 
 /// What rays leap over, on the device.
@@ -80,7 +95,7 @@ impl GpuEngine {
         Ok(Self {
             gpu,
             renderer,
-            volume,
+            levels: vec![volume],
             storage,
             kernels: None,
             gradient_map: None,
@@ -91,48 +106,87 @@ impl GpuEngine {
         })
     }
 
+    /// Uploads coarser levels of the volume.
+    pub(super) fn add_levels(&mut self, coarser: &[Volume]) -> Result<(), GpuError> {
+        for volume in coarser {
+            let format = self.levels[0].format();
+            self.levels.push(GpuVolume::upload_as(&self.gpu, volume, format, &mut |_, _| {})?);
+        }
+        Ok(())
+    }
+
     pub(super) fn prepare(
         &mut self,
         parameters: &CastParameters,
         skipping: &Skipping,
     ) -> Result<Shot, GpuError> {
+        let scene = self.scene(0, parameters, skipping)?;
+        self.scenes.push(scene);
+        Ok(Shot(self.scenes.len() - 1))
+    }
+
+    pub(super) fn prepare_detail(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+        level_of_detail: LevelOfDetail,
+    ) -> Result<Shot, GpuError> {
+        let mut coarser = Vec::new();
+        for level in 1..self.levels.len() {
+            let alone = self.scene(level, &parameters.of_level(level), skipping)?.prepared;
+            let behind = self.renderer.behind(&self.gpu, &alone)?;
+            coarser.push(CoarserLevel { alone, behind });
+        }
+        let scene = self.scene(0, parameters, skipping)?;
+        self.scenes.push(Scene { detail: Some(Detail { level_of_detail, coarser }), ..scene });
+        Ok(Shot(self.scenes.len() - 1))
+    }
+
+    /// One level with some settings.
+    fn scene(
+        &mut self,
+        level: usize,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+    ) -> Result<Scene, GpuError> {
         let gradient_map = self.gradient_map(parameters, skipping)?;
         let mut parameters = parameters.clone();
-        let (structures, leaping) = match self.plan(skipping.request) {
+        let (structures, leaping) = match self.plan(level, skipping.request) {
             None => (Structures::Nothing, Leaping::NOTHING),
             Some(plan) if matches!(parameters.mode, Mode::Mip | Mode::MinIp) => {
                 let kernels = self.kernels()?;
-                let ranges = GpuBlockRanges::of_values(&self.gpu, &kernels, &self.volume, plan.block_size)?;
+                let ranges =
+                    GpuBlockRanges::of_values(&self.gpu, &kernels, &self.levels[level], plan.block_size)?;
                 let leaping = Leaping::over_idle_blocks(&plan, ranges.byte_size());
                 (Structures::Ranges(ranges), leaping)
             }
-            Some(plan) => self.skip_map(&mut parameters, gradient_map.as_ref(), &plan)?,
+            Some(plan) => self.skip_map(level, &mut parameters, gradient_map.as_ref(), &plan)?,
         };
         let leap = match &structures {
             Structures::Nothing => Leap::Nothing,
             Structures::Map(map) => Leap::EmptyBlocks(map),
             Structures::Ranges(ranges) => Leap::IdleBlocks(ranges),
         };
-        let sources = Sources { volume: &self.volume, gradient_map: gradient_map.as_ref(), leap };
+        let sources = Sources { volume: &self.levels[level], gradient_map: gradient_map.as_ref(), leap };
         let prepared = self.renderer.prepare(&self.gpu, &sources, parameters)?;
         let gradient_map =
             gradient_map.as_ref().map(|map| GradientMapSize { depth: map.depth(), bytes: map.byte_size() });
-        self.scenes.push(Scene { prepared: Arc::new(prepared), gradient_map, leaping });
-        Ok(Shot(self.scenes.len() - 1))
+        Ok(Scene { prepared: Arc::new(prepared), gradient_map, leaping, detail: None })
     }
 
-    pub(super) fn plan(&self, request: SkipRequest) -> Option<SkipPlan> {
-        request.plan(self.volume.dims(), self.storage, self.gpu.capabilities().skip_host())
+    pub(super) fn plan(&self, level: usize, request: SkipRequest) -> Option<SkipPlan> {
+        request.plan(self.levels[level].dims(), self.storage, self.gpu.capabilities().skip_host())
     }
 
     /// What rays leap over; the parameters get to know where the volume is occupied.
     fn skip_map(
         &mut self,
+        level: usize,
         parameters: &mut CastParameters,
         gradient_map: Option<&GpuGradientMap>,
         plan: &SkipPlan,
     ) -> Result<(Structures, Leaping), GpuError> {
-        let mut builder = self.builder(gradient_map, plan.block_size)?;
+        let mut builder = self.builder(level, gradient_map, plan.block_size)?;
         let map = builder.map(&self.gpu, parameters, plan.structure)?;
         let distances = map.read(&self.gpu)?;
         let blocks = &distances[..map.grid().block_count()];
@@ -172,28 +226,41 @@ impl GpuEngine {
         {
             return Ok(Some(map.clone()));
         }
-        let map = GpuGradientMap::new(&self.gpu, &self.volume, parameters.gradient, depth)?;
+        let map = GpuGradientMap::new(&self.gpu, &self.levels[0], parameters.gradient, depth)?;
         self.gradient_map = Some((kind, map.clone()));
         Ok(Some(map))
     }
 
     fn builder(
         &mut self,
+        level: usize,
         gradient_map: Option<&GpuGradientMap>,
         block_size: BlockSize,
     ) -> Result<SkipBuilder, GpuError> {
         let kernels = self.kernels()?;
+        let volume = &self.levels[level];
         match gradient_map {
-            Some(map) => SkipBuilder::with_gradients(&self.gpu, &kernels, &self.volume, map, block_size),
-            None => SkipBuilder::new(&self.gpu, &kernels, &self.volume, block_size),
+            Some(map) => SkipBuilder::with_gradients(&self.gpu, &kernels, volume, map, block_size),
+            None => SkipBuilder::new(&self.gpu, &kernels, volume, block_size),
         }
     }
 
     pub(super) fn cast(&mut self, shot: Shot, views: &[View]) -> Result<Duration, GpuError> {
         self.fit_targets(views)?;
         let targets = &mut self.targets[..views.len()];
+        let scene = &self.scenes[shot.0];
         let start = Instant::now();
-        self.renderer.render(&self.gpu, &self.scenes[shot.0].prepared, views, targets)?;
+        match &scene.detail {
+            None => self.renderer.render(&self.gpu, &scene.prepared, views, targets)?,
+            Some(detail) => {
+                for (view, target) in views.iter().zip(targets) {
+                    for (part, prepared) in detail.parts(&scene.prepared, view) {
+                        let target = std::slice::from_mut(target);
+                        self.renderer.render(&self.gpu, prepared, &[part], target)?;
+                    }
+                }
+            }
+        }
         Ok(start.elapsed())
     }
 
@@ -251,7 +318,7 @@ impl GpuEngine {
         plan: &SkipPlan,
     ) -> Result<f64, GpuError> {
         let gradient_map = self.gradient_map(parameters, skipping)?;
-        let mut builder = self.builder(gradient_map.as_ref(), plan.block_size)?;
+        let mut builder = self.builder(0, gradient_map.as_ref(), plan.block_size)?;
         let map = builder.map(&self.gpu, parameters, plan.structure)?;
         median_ms(|| {
             builder.update(&self.gpu, parameters, &map)?;
@@ -267,11 +334,28 @@ impl GpuEngine {
     ) -> Result<f64, GpuError> {
         let gradient_map = self.gradient_map(parameters, skipping)?;
         let kernels = self.kernels()?;
-        let baseline = DmBaseline::new(&self.gpu, &kernels, &self.volume, gradient_map.as_ref(), block_size)?;
+        let baseline =
+            DmBaseline::new(&self.gpu, &kernels, &self.levels[0], gradient_map.as_ref(), block_size)?;
         median_ms(|| {
             baseline.map(&self.gpu, parameters)?;
             self.gpu.wait()
         })
+    }
+}
+
+impl Detail {
+    /// The parts of a view from near to far, and what each is cast with.
+    fn parts<'a>(&'a self, nearest: &'a Prepared, view: &View) -> Vec<(View, &'a Prepared)> {
+        let slabs = self.level_of_detail.slabs(view, nearest.parameters(), 1 + self.coarser.len());
+        let first = slabs[0].level;
+        let prepared = |level: usize| -> &'a Prepared {
+            match level.checked_sub(1).map(|coarser| &self.coarser[coarser]) {
+                None => nearest,
+                Some(coarser) if level == first => &coarser.alone,
+                Some(coarser) => &coarser.behind,
+            }
+        };
+        slabs.iter().map(|slab| (slab.part_of(view), prepared(slab.level))).collect()
     }
 }
 

@@ -13,6 +13,7 @@ pub(crate) use gpu::{GpuWarping, LiveEngine};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest, Structure};
@@ -243,7 +244,7 @@ impl<'v> Engine<'v> {
     /// What is made where something is asked for.
     pub(crate) fn plan(&self, request: SkipRequest) -> Option<SkipPlan> {
         match self {
-            Self::Gpu(engine) => engine.plan(request),
+            Self::Gpu(engine) => engine.plan(0, request),
             Self::Cpu(engine) => engine.plan(request),
         }
     }
@@ -265,6 +266,30 @@ impl<'v> Engine<'v> {
         match self {
             Self::Gpu(engine) => engine.prepare(parameters, skipping),
             Self::Cpu(engine) => Ok(engine.prepare(parameters, skipping)),
+        }
+    }
+
+    /// Takes coarser levels of the volume ([`Volume::coarser_levels`]) for [`Engine::prepare_detail`].
+    pub(crate) fn add_levels(&mut self, coarser: &'v [Volume]) -> Result<(), GpuError> {
+        match self {
+            Self::Gpu(engine) => engine.add_levels(coarser),
+            Self::Cpu(engine) => {
+                engine.add_levels(coarser);
+                Ok(())
+            }
+        }
+    }
+
+    /// As [`Engine::prepare`], for composites by value whose far parts are cast of coarser levels.
+    pub(crate) fn prepare_detail(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+        level_of_detail: LevelOfDetail,
+    ) -> Result<Shot, GpuError> {
+        match self {
+            Self::Gpu(engine) => engine.prepare_detail(parameters, skipping, level_of_detail),
+            Self::Cpu(engine) => Ok(engine.prepare_detail(parameters, skipping, level_of_detail)),
         }
     }
 

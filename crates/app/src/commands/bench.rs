@@ -1,6 +1,6 @@
 //! `bench`: what its commands share.
 
-use super::{bench_cast, bench_skip, bench_stereo, bench_warp};
+use super::{bench_cast, bench_detail, bench_skip, bench_stereo, bench_warp};
 use crate::backend::Engine;
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -22,6 +22,7 @@ use wheatstone_io::{Loaded, read_volume};
 #[command(after_help = "Examples:\n  \
     wheatstone bench cast bonsai.nii.gz --up A --json\n  \
     wheatstone bench skip beetle:256 --frames 6 --plot plots\n  \
+    wheatstone bench detail bonsai.nii.gz --up A --distances 1.2,5\n  \
     wheatstone bench stereo bonsai.nii.gz box:256 --up A --plot plots\n  \
     wheatstone bench warp bonsai.nii.gz --up A --plot plots")]
 pub(crate) struct BenchArgs {
@@ -32,6 +33,7 @@ pub(crate) struct BenchArgs {
 #[derive(Debug, Subcommand)]
 enum BenchCommand {
     Cast(bench_cast::CastArgs),
+    Detail(bench_detail::DetailArgs),
     Skip(bench_skip::SkipBenchArgs),
     Stereo(Box<bench_stereo::StereoBenchArgs>),
     Warp(Box<bench_warp::WarpBenchArgs>),
@@ -41,6 +43,7 @@ enum BenchCommand {
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     match &args.what {
         BenchCommand::Cast(args) => bench_cast::run(args),
+        BenchCommand::Detail(args) => bench_detail::run(args),
         BenchCommand::Skip(args) => bench_skip::run(args),
         BenchCommand::Stereo(args) => bench_stereo::run(args),
         BenchCommand::Warp(args) => bench_warp::run(args),

@@ -2,6 +2,7 @@
 
 pub(crate) mod bench;
 mod bench_cast;
+mod bench_detail;
 mod bench_skip;
 mod bench_stereo;
 mod bench_warp;

@@ -6,7 +6,7 @@ use crate::backend::{
 use crate::camera::{CameraArgs, Stereo};
 use crate::failure::Failure;
 use crate::heat_map::{heat_map, most_reads};
-use crate::look::{Look, LookArgs};
+use crate::look::{Look, LookArgs, ModeName};
 use crate::output::{check_writable, numbered, print_json};
 use crate::pairing::{PairArgs, PairRequest, Pairing};
 use crate::picture::{Bits, Picture};
@@ -18,6 +18,7 @@ use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::image::Image;
 use wheatstone_core::scene::Placement;
 use wheatstone_core::view::world_from_patient;
@@ -67,6 +68,10 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "WHAT", default_value = "picture", value_parser = spec::show)]
     show: Show,
 
+    /// Cast what is far away of coarser voxels by longer steps, each about so many pixels wide (dvr, one-dimensional functions).
+    #[arg(long, value_name = "PIXELS", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = spec::within(0.1..=100.0), allow_negative_numbers = true)]
+    level_of_detail: Option<f64>,
+
     /// Print one JSON object on standard output.
     #[arg(long)]
     json: bool,
@@ -108,20 +113,25 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     check_writable(&args.output, args.camera.stereo.extension())?;
     args.camera.check()?;
     args.look.check()?;
+    args.check_detail()?;
     let request = args.pair_request()?;
     let skipping = args.skip.resolve(SkipName::Auto)?;
     let mut loaded = args.volume.load()?;
     let look = args.look.resolve(&loaded.volume)?;
+    if args.level_of_detail.is_some() && look.settings.transfer.is_2d() {
+        return Err(Failure::input("--level-of-detail needs a transfer function of one dimension"));
+    }
     loaded.volume.fill_non_finite(look.settings.window.lo());
     let volume = &loaded.volume;
     let placement = Placement::new(volume, world_from_patient(volume.grid(), args.camera.up.direction()));
     let parameters = CastParameters::new(&look.settings, &placement);
+    let coarser = args.level_of_detail.map_or_else(Vec::new, |_| volume.coarser_levels());
     let needs_gpu = request.is_some_and(|request| request.is_single_pass());
-    let mut engine = args.open(args.backend, volume, needs_gpu)?;
+    let mut engine = args.open(args.backend, volume, &coarser, needs_gpu)?;
     let made = match args.make(&mut engine, &parameters, &skipping, request) {
         Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
             note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, volume, needs_gpu)?;
+            engine = args.open(BackendChoice::Cpu, volume, &coarser, needs_gpu)?;
             args.make(&mut engine, &parameters, &skipping, request)?
         }
         made => made?,
@@ -137,19 +147,33 @@ impl RenderArgs {
             return Err(Failure::input("--bits 16 needs a PNG file: --stereo wobble writes a GIF file"));
         }
         let request = self.pair.resolve(self.camera.stereo)?;
-        match self.show {
-            Show::Samples(_) if request.is_some_and(|request| request.is_single_pass()) => {
-                Err(Failure::input("--show samples needs a cast of each eye: --stereo-method two-pass"))
+        let is_single_pass = request.is_some_and(|request| request.is_single_pass());
+        let refusal = match (self.show, self.level_of_detail) {
+            (Show::Picture, None) => return Ok(request),
+            (Show::Samples(_), _) => "--show samples needs a cast of each eye: --stereo-method two-pass",
+            (Show::Picture, Some(_)) => {
+                "--level-of-detail needs a cast of each eye: --stereo-method two-pass"
             }
-            Show::Samples(_) => Ok(None),
-            Show::Picture => Ok(request),
+        };
+        if is_single_pass { Err(Failure::input(refusal)) } else { Ok(None) }
+    }
+
+    fn check_detail(&self) -> Result<(), Failure> {
+        let mode = self.look.mode_name();
+        if self.level_of_detail.is_some() && mode != ModeName::Dvr {
+            return Err(Failure::input(format!(
+                "--level-of-detail needs --mode dvr, not --mode {}",
+                mode.name()
+            )));
         }
+        Ok(())
     }
 
     fn open<'v>(
         &self,
         choice: BackendChoice,
         volume: &'v Volume,
+        coarser: &'v [Volume],
         needs_gpu: bool,
     ) -> Result<Engine<'v>, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
@@ -159,7 +183,9 @@ impl RenderArgs {
             samples_per_ray: longest as f64 * self.look.sampling_factor,
             needs_gpu,
         };
-        Engine::open(choice, &job, volume, self.look.storage.kind(volume))
+        let mut engine = Engine::open(choice, &job, volume, self.look.storage.kind(volume))?;
+        engine.add_levels(coarser)?;
+        Ok(engine)
     }
 
     /// Pixels of one frame.
@@ -182,7 +208,10 @@ impl RenderArgs {
     ) -> Result<Made, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let bar = Bar::new("frames", u64::from(frames));
-        let shot = engine.prepare(parameters, skipping)?;
+        let shot = match self.level_of_detail {
+            None => engine.prepare(parameters, skipping)?,
+            Some(pixels) => engine.prepare_detail(parameters, skipping, LevelOfDetail { pixels })?,
+        };
         let views = self.camera.views(0.0)?;
         let mut made = Made {
             frames_ms: Vec::new(),
@@ -312,6 +341,7 @@ impl RenderArgs {
                 "skip": made.leaping.to_json(made.map_reads),
                 "gradient_map": made.gradient_map.map(GradientMapSize::to_json),
                 "white": made.white,
+                "level_of_detail": self.level_of_detail,
                 "upload_ms": milliseconds(engine.upload_time()),
                 "outputs": outputs,
                 "warnings": warnings,

@@ -76,6 +76,10 @@ fn contradictions_are_refused() {
     refuses(&bench, &["--mode", "mip", "--shading", "phong"], "--shading needs");
     refuses(&bench, &["--mode", "mip", "--preintegrated"], "--preintegrated needs");
     refuses(&bench, &["--preintegrated", "--tf", "ramp:0..1,0..1"], "one dimension");
+    refuses(&bench, &["--level-of-detail", "--mode", "mip"], "--level-of-detail needs --mode dvr");
+    refuses(&bench, &["--level-of-detail=2", "--tf", "ramp:0..1,0..1"], "one dimension");
+    let strips = ["--stereo", "anaglyph", "--stereo-method", "strips", "--level-of-detail"];
+    refuses(&bench, &strips, "--level-of-detail needs a cast of each eye");
     refuses(&bench, &["--orthographic", "1", "--stereo", "anaglyph"], "--stereo needs a perspective");
     refuses(&bench, &["--stereo-method", "two-pass"], "--stereo-method needs --stereo side-by-side");
     refuses(&bench, &["--stereo-quality", "fast", "--stereo", "left"], "--stereo-quality needs --stereo");

@@ -19,6 +19,7 @@ fn render_reports_one_object() {
         "frame_ms",
         "frames_ms",
         "gradient_map",
+        "level_of_detail",
         "mode",
         "outputs",
         "picture_size",
@@ -283,6 +284,36 @@ fn bench_skip_lists_every_structure_and_draws_charts() {
     }
     let table = bench.run(&small).stdout;
     assert_eq!(table.lines().filter(|line| line.contains(" anisotropic ")).count(), 10, "{table}");
+}
+
+#[test]
+fn bench_detail_compares_near_and_far() {
+    let bench = Bench::new();
+    let small =
+        ["bench", "detail", "sphere.nrrd", "--size", "24x24", "--distances", "0.4,9", "--frames", "1"];
+    let json = bench.run(&[&small[..], &["--backend", "cpu", "--json"]].concat()).json();
+    assert_eq!(keys(&json), ["device", "frames", "pixels", "rows", "size"]);
+    let rows = json["rows"].as_array().unwrap();
+    let row_keys = [
+        "distance_m",
+        "dssim_from_full",
+        "dssim_from_truth",
+        "frame_ms",
+        "of_full",
+        "samples_per_ray",
+        "skip",
+        "volume",
+        "what",
+    ];
+    assert!(rows.len() == 12 && rows.iter().all(|row| keys(row) == row_keys));
+    for rows in rows.chunks(3) {
+        let [full, levels, first] = [0, 1, 2].map(|i| rows[i]["samples_per_ray"].as_f64().unwrap());
+        let is_far = rows[0]["distance_m"] == 9.0;
+        assert!(if is_far { levels < 0.5 * full } else { levels == full }, "{rows:?}");
+        assert!(first < full && rows[2]["dssim_from_full"].is_null(), "{rows:?}");
+    }
+    let table = bench.run(&[&small[..], &["--backend", "cpu"]].concat()).stdout;
+    assert_eq!(table.lines().filter(|line| line.contains(" levels ")).count(), 4, "{table}");
 }
 
 #[test]
