@@ -74,5 +74,5 @@ pub(crate) const DERIVED_OPACITY: f64 = 0.01;
 /// The same if each sample is in one slab as a whole: about one sample more or less.
 pub(crate) const DERIVED_OPACITY_OF_WHOLE_SAMPLES: f64 = 0.04;
 
-/// DSSIM of pictures with and without level of detail: voxels and steps of up to √2 pixels blur.
-pub(crate) const DETAIL_DSSIM: f64 = 0.01;
+/// DSSIM of a sphere with level of detail against means of many rays in each pixel: a voxel of up to √2 pixels at its rim.
+pub(crate) const DETAIL_DSSIM: f64 = 0.015;
