@@ -336,10 +336,13 @@ fn bench_warp_traces_every_warp() {
         "dssim_worst",
         "missed",
         "motion",
+        "pose_off_trace",
         "trace",
+        "turn_off_deg_worst",
         "volume",
         "warp",
         "warp_ms",
+        "way_off_mm_worst",
     ];
     let costs = json["costs"].as_array().unwrap();
     assert!(costs.len() == 8 && costs.iter().all(|cost| cost["of_cast"].as_f64().unwrap() >= 0.0));
