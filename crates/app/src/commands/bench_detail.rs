@@ -131,12 +131,13 @@ pub(crate) fn run(args: &DetailArgs) -> Result<(), Failure> {
 
 impl DetailArgs {
     fn measure_volume(&self, described: &str, rows: &mut Vec<Row>) -> Result<Device, Failure> {
-        let Opened { volume, name, benchmark } = open(described)?;
+        let Opened { mut volume, name, benchmark } = open(described)?;
         let transfer = self.tf.clone().unwrap_or_else(|| default_transfer(&benchmark));
         let resolved = transfer.resolve(&volume, None)?;
         if resolved.transfer.is_2d() {
             return Err(Failure::input("bench detail needs a transfer function of one dimension"));
         }
+        volume.fill_non_finite(resolved.window.lo());
         let settings = Settings::new(resolved.window, resolved.transfer);
         let placement = Placement::new(&volume, world_from_patient(volume.grid(), self.up.direction()));
         let parameters = CastParameters::new(&settings, &placement);

@@ -183,8 +183,16 @@ impl RenderArgs {
             samples_per_ray: longest as f64 * self.look.sampling_factor,
             needs_gpu,
         };
-        let mut engine = Engine::open(choice, &job, volume, self.look.storage.kind(volume))?;
-        engine.add_levels(coarser)?;
+        let open = |choice| Engine::open(choice, &job, volume, self.look.storage.kind(volume));
+        let mut engine = open(choice)?;
+        match engine.add_levels(coarser) {
+            Err(error) if choice == BackendChoice::Auto && !needs_gpu => {
+                note_fallback(&error);
+                engine = open(BackendChoice::Cpu)?;
+                engine.add_levels(coarser)?;
+            }
+            added => added?,
+        }
         Ok(engine)
     }
 

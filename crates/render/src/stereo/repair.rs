@@ -154,8 +154,9 @@ pub(crate) struct Repair {
 }
 
 impl Repair {
-    /// Sends off the listing of what is to be cast of the derived picture, and its cast. Returns the last submission.
-    pub(crate) fn send(&self, frame: &PairFrame<'_>) -> wgpu::SubmissionIndex {
+    /// Sends off the listing of what is to be cast of the derived picture, and its cast. Waits for all dispatches but the last,
+    /// and returns that submission.
+    pub(crate) fn send(&self, frame: &PairFrame<'_>) -> Result<wgpu::SubmissionIndex, GpuError> {
         let PairFrame { gpu, prepared, epipolar, .. } = frame;
         self.repairs.clear(&gpu.queue);
         let mut sent = frame.send(|encoder| self.pass.dispatch(encoder, frame, &self.repairs));
@@ -163,6 +164,9 @@ impl Repair {
         let mut view = ViewUniform::new(&prepared.parameters, epipolar.derived());
         view.sample_limit = self.sample_limit;
         while view.first_sample < prepared.parameters.most_samples_per_ray() {
+            if view.first_sample > 0 {
+                gpu.wait_for(sent)?;
+            }
             gpu.queue.write_buffer(&prepared.view_uniform, 0, bytemuck::bytes_of(&view));
             let workgroups = Workgroups::Listed(&self.repairs.plan);
             sent = frame.send(|encoder| {
@@ -170,7 +174,7 @@ impl Repair {
             });
             view.first_sample = view.first_sample.saturating_add(self.sample_limit);
         }
-        sent
+        Ok(sent)
     }
 }
 

@@ -128,14 +128,14 @@ impl StripPass {
         let buffers = self.buffers(gpu, &sizes)?;
         let group = self.group(frame, &buffers);
         let [_, bands] = frame.squares(Eye::Reference);
-        let derive = || {
+        let derive = || -> Result<Derivation, GpuError> {
             let bindings = frame.bind(Eye::Derived, &strips);
             let merged = frame.send(|encoder| {
                 let mut pass = bindings.begin_pass(encoder, &merge, Some(&group));
                 let [x, y] = merged_workgroups(frame);
                 pass.dispatch_workgroups(x, y, 1);
             });
-            Derivation { merged, repaired: repair.map(|repair| repair.send(frame)) }
+            Ok(Derivation { merged, repaired: repair.map(|repair| repair.send(frame)).transpose()? })
         };
 
         let start = Instant::now();
@@ -149,7 +149,7 @@ impl StripPass {
             drop(pass);
             buffers.count_unfinished(encoder);
         });
-        let derived_at_once = self.ends_at_once.then(derive);
+        let derived_at_once = self.ends_at_once.then(derive).transpose()?;
         gpu.wait_for(sent)?;
         let mut cast = start.elapsed();
         let mut times = derived_at_once.map(|derived| derived.wait(gpu)).transpose()?;
@@ -166,7 +166,7 @@ impl StripPass {
                 buffers.count_unfinished(encoder);
             })?;
         }
-        let [composite, repair_time] = times.map_or_else(|| derive().wait(gpu), Ok)?;
+        let [composite, repair_time] = times.map_or_else(|| derive()?.wait(gpu), Ok)?;
         self.kept = Some(buffers);
         let bytes = sizes.iter().sum::<u64>() + repair.map_or(0, |repair| repair.bytes);
         Ok(PairReport { bytes, cast, composite, repair: repair_time, ..PairReport::default() })
