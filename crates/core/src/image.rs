@@ -47,6 +47,28 @@ pub struct RgbImage {
 }
 
 impl RgbImage {
+    /// The means of squares of so many pixels along each side; what is left over on the right and below is left out.
+    ///
+    /// # Panics
+    /// If `side` is 0.
+    pub fn averaged(&self, side: u32) -> Self {
+        let [width, height] = [self.width, self.height].map(|pixels| pixels / side);
+        let share = 1.0 / (side * side) as f32;
+        let mean = |x: u32, y: u32| {
+            let mut mean = [0.0; 3];
+            for row in side * y..side * (y + 1) {
+                let first = (row * self.width + side * x) as usize;
+                for pixel in &self.rgb[first..first + side as usize] {
+                    mean.iter_mut().zip(pixel).for_each(|(mean, channel)| *mean += share * channel);
+                }
+            }
+            mean
+        };
+        let rgb =
+            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
+        Self { width, height, rgb }
+    }
+
     /// Two pictures of equal height side by side, the first on the left.
     ///
     /// # Panics

@@ -52,6 +52,14 @@ impl Squares {
         [self.columns.len() as u32, self.bands.len() as u32]
     }
 
+    /// The pixels of a picture of the given size that they hold.
+    pub(crate) fn pixels(&self, [width, height]: [u32; 2]) -> PixelRect {
+        let pixels = |squares: &Range<u32>, side: u32| {
+            squares.start * BAND_ROWS..side.min(squares.end.saturating_mul(BAND_ROWS))
+        };
+        PixelRect { columns: pixels(&self.columns, width), rows: pixels(&self.bands, height) }
+    }
+
     /// Rows of pixels of a picture of the given height.
     pub(crate) fn rows(&self, height: u32) -> u32 {
         height.min(self.bands.end * BAND_ROWS).saturating_sub(self.bands.start * BAND_ROWS)

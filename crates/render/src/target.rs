@@ -1,10 +1,8 @@
 //! Where a view is cast to: colour, depth and sample counts of one picture, and their way back to the host.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::pacer::BAND_ROWS;
 use crate::readback::read_texture;
 use crate::squares::Squares;
-use std::ops::Range;
 use wheatstone_core::image::Image;
 use wheatstone_core::reference::{Cast, Reads};
 use wheatstone_core::view::PixelRect;
@@ -105,11 +103,7 @@ impl Target {
 
     /// The pixels that may not be blank.
     pub(crate) fn drawn_pixels(&self) -> PixelRect {
-        let pixels = |squares: &Range<u32>, side: u32| {
-            squares.start * BAND_ROWS..side.min(squares.end.saturating_mul(BAND_ROWS))
-        };
-        let [width, height] = self.size;
-        PixelRect { columns: pixels(&self.drawn.columns, width), rows: pixels(&self.drawn.bands, height) }
+        self.drawn.pixels(self.size)
     }
 
     /// Encodes a copy of what has been drawn to another target of the same size.
@@ -197,8 +191,7 @@ fn blank_squares(
     (texture, z): (&wgpu::Texture, u32),
     drawn: &Squares,
 ) {
-    let columns = drawn.columns.start * BAND_ROWS..texture.width().min(drawn.columns.end * BAND_ROWS);
-    let rows = drawn.bands.start * BAND_ROWS..texture.height().min(drawn.bands.end * BAND_ROWS);
+    let PixelRect { columns, rows } = drawn.pixels([texture.width(), texture.height()]);
     if columns.is_empty() {
         return;
     }

@@ -186,7 +186,7 @@ impl DetailArgs {
             bar.advance();
         }
         engine.cast(truth, &[self.view(distance_m, self.size.map(|side| RAYS_ACROSS * side))?])?;
-        let truth = averaged(&pictured(&engine.read()?[0]));
+        let truth = pictured(&engine.read()?[0]).averaged(RAYS_ACROSS);
         let medians_ms: Vec<f64> = times_ms.iter().map(|times_ms| median(times_ms)).collect();
         let pictures: Vec<RgbImage> = casts.iter().map(pictured).collect();
         let rays = f64::from(self.size[0]) * f64::from(self.size[1]);
@@ -219,23 +219,6 @@ impl DetailArgs {
 
 fn pictured(cast: &Cast) -> RgbImage {
     cast.image.over_background([0.0; 3])
-}
-
-/// The means of squares of `RAYS_ACROSS`² pixels.
-fn averaged(picture: &RgbImage) -> RgbImage {
-    let [width, height] = [picture.width, picture.height].map(|side| side / RAYS_ACROSS);
-    let share = 1.0 / (RAYS_ACROSS * RAYS_ACROSS) as f32;
-    let mut rgb = vec![[0.0; 3]; (width * height) as usize];
-    for (y, row) in picture.rgb.chunks(picture.width as usize).enumerate() {
-        for (x, pixel) in row.iter().enumerate() {
-            let of = RAYS_ACROSS as usize;
-            let mean = &mut rgb[y / of * width as usize + x / of];
-            for (mean, channel) in mean.iter_mut().zip(pixel) {
-                *mean += share * channel;
-            }
-        }
-    }
-    RgbImage { width, height, rgb }
 }
 
 /// Every way.

@@ -127,12 +127,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let parameters = CastParameters::new(&look.settings, &placement);
     let coarser = args.level_of_detail.map_or_else(Vec::new, |_| volume.coarser_levels());
     let needs_gpu = request.is_some_and(|request| request.is_single_pass());
-    let mut engine = args.open(args.backend, volume, &coarser, needs_gpu)?;
-    let made = match args.make(&mut engine, &parameters, &skipping, request) {
+    let mut engine = args.open(args.backend, volume, needs_gpu)?;
+    let made = match args.make(&mut engine, &coarser, &parameters, &skipping, request) {
         Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
             note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, volume, &coarser, needs_gpu)?;
-            args.make(&mut engine, &parameters, &skipping, request)?
+            engine = args.open(BackendChoice::Cpu, volume, needs_gpu)?;
+            args.make(&mut engine, &coarser, &parameters, &skipping, request)?
         }
         made => made?,
     };
@@ -173,7 +173,6 @@ impl RenderArgs {
         &self,
         choice: BackendChoice,
         volume: &'v Volume,
-        coarser: &'v [Volume],
         needs_gpu: bool,
     ) -> Result<Engine<'v>, Failure> {
         let frames = self.turntable.or(self.frames).unwrap_or(1);
@@ -183,17 +182,7 @@ impl RenderArgs {
             samples_per_ray: longest as f64 * self.look.sampling_factor,
             needs_gpu,
         };
-        let open = |choice| Engine::open(choice, &job, volume, self.look.storage.kind(volume));
-        let mut engine = open(choice)?;
-        match engine.add_levels(coarser) {
-            Err(error) if choice == BackendChoice::Auto && !needs_gpu => {
-                note_fallback(&error);
-                engine = open(BackendChoice::Cpu)?;
-                engine.add_levels(coarser)?;
-            }
-            added => added?,
-        }
-        Ok(engine)
+        Engine::open(choice, &job, volume, self.look.storage.kind(volume))
     }
 
     /// Pixels of one frame.
@@ -207,13 +196,15 @@ impl RenderArgs {
         self.json || self.frames.is_some() || self.turntable.is_some()
     }
 
-    fn make(
+    fn make<'v>(
         &self,
-        engine: &mut Engine<'_>,
+        engine: &mut Engine<'v>,
+        coarser: &'v [Volume],
         parameters: &CastParameters,
         skipping: &Skipping,
         request: Option<PairRequest>,
     ) -> Result<Made, Failure> {
+        engine.add_levels(coarser)?;
         let frames = self.turntable.or(self.frames).unwrap_or(1);
         let bar = Bar::new("frames", u64::from(frames));
         let shot = match self.level_of_detail {

@@ -52,19 +52,8 @@ fn seen_from(distance_m: f64, cut: u32) -> View {
     look(eye, DVec3::ZERO, DVec3::Y, perspective(0.37, size), size)
 }
 
-/// Means of `RAYS` by `RAYS` pixels.
-fn averaged(cast: &Cast) -> RgbImage {
-    let fine = cast.image.over_background([0.0; 3]);
-    let [width, height] = [fine.width, fine.height].map(|pixels| pixels / RAYS);
-    let pixel = |x: u32, y: u32| {
-        let rays = (0..RAYS * RAYS).map(|ray| (RAYS * x + ray % RAYS, RAYS * y + ray / RAYS));
-        let sum = rays.fold([0.0; 3], |sum: [f32; 3], (x, y)| {
-            std::array::from_fn(|channel| sum[channel] + fine.rgb[(y * fine.width + x) as usize][channel])
-        });
-        sum.map(|channel| channel / (RAYS * RAYS) as f32)
-    };
-    let rgb = (0..width * height).map(|at| pixel(at % width, at / width)).collect();
-    RgbImage { width, height, rgb }
+fn over_black(cast: &Cast) -> RgbImage {
+    cast.image.over_background([0.0; 3])
 }
 
 #[test]
@@ -83,8 +72,8 @@ fn what_is_near_is_cast_as_ever_and_what_is_far_by_a_fraction_of_the_samples() {
         let (cast, full) = (levels.cast(&far, &slabs_from(&far)), levels.cast_fully(&far));
         let of_samples = cast.samples as f64 / full.samples as f64;
         assert!(of_samples < most_of_samples, "{distance_m} m: {of_samples} of the samples");
-        let truth = averaged(&levels.cast_fully(&seen_from(distance_m, RAYS)));
-        let dssim = compare(&cast.image.over_background([0.0; 3]), &truth).unwrap().dssim();
+        let truth = over_black(&levels.cast_fully(&seen_from(distance_m, RAYS))).averaged(RAYS);
+        let dssim = compare(&over_black(&cast), &truth).unwrap().dssim();
         assert!(dssim < tolerance::DETAIL_DSSIM, "{distance_m} m: {dssim}");
     }
 }
