@@ -97,19 +97,19 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
             stretch_end = min(stretch_end, under_way.slab_end);
         }
         while under_way.next < stretch_end {
-            while SHADING_IS_DEAR && under_way.next >= under_way.slab_end {
-                under_way = enter_slab(ray, place, under_way);
-            }
             var value = 0.0;
             var is_found = false;
             loop {
                 value = value_at(ray_at(ray, f32(under_way.next) + VALUE_OFFSET));
                 is_found = may_be_visible(value, under_way.segment.scalar);
-                if is_found || !SEARCHES || under_way.next + 1u >= min(stretch_end, under_way.slab_end) {
+                if is_found || !SEARCHES || under_way.next + 1u >= stretch_end {
                     break;
                 }
                 under_way.segment.scalar = value;
                 under_way.next++;
+            }
+            while SHADING_IS_DEAR && is_found && under_way.next >= under_way.slab_end {
+                under_way = enter_slab(ray, place, under_way);
             }
             if is_found {
                 let transmittance = under_way.segment.transmittance;

@@ -1,9 +1,9 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::ray::{Ray, ray_depth_m};
-import package::lib::segment_sink::{SegmentPlace};
-import package::lib::segmented_ray::{SegmentedRay};
-import package::lib::slabs::{slab_at};
-import package::lib::strips::{first_reached, partial_at, partials, reach};
+import package::lib::segmented_ray::{SegmentedRay, leaps};
+import package::lib::skip::{next_run, start_walk};
+import package::lib::slabs::{end_of_slab, slab_at, start_of_slab};
+import package::lib::strips::{first_reached, reach};
 import package::lib::view::{view};
 
 // What rays that end leave out of the derived picture.
@@ -11,50 +11,69 @@ import package::lib::view::{view};
 // Opacity of a derived pixel from which on what is missing is not missed: it lets less than a tenth of the light through.
 const HIDING_ALPHA: f32 = 0.9;
 
-// A bit for each derived column of a row of a strip that a ray would have gone on to, with less than that in front by then.
-@group(3) @binding(4) var<storage, read_write> cuts: array<u32>;
+// Two words for each 32 derived columns of a row of a strip. A bit of the first: the column is as opaque as that. Of the second: it
+// is not, and a ray that has ended would have gone on to something there.
+@group(3) @binding(4) var<storage, read_write> cuts: array<vec2u>;
 
 const CUTS_PER_WORD: u32 = 32u;
 
-// The word of a derived column.
-fn word_at(row: u32, strip: u32, column: i32) -> u32 {
+// The words of a derived column, counted from the first that the strip reaches.
+fn words_at(row: u32, strip: u32, from_first: u32) -> u32 {
     let words = (reach() + CUTS_PER_WORD - 1u) / CUTS_PER_WORD;
-    return (row * view.pair.count + strip) * words + u32(column - first_reached(strip)) / CUTS_PER_WORD;
+    return (row * view.pair.count + strip) * words + from_first / CUTS_PER_WORD;
 }
 
-fn bit_of(strip: u32, column: i32) -> u32 {
-    return 1u << (u32(column - first_reached(strip)) % CUTS_PER_WORD);
+fn bit_of(from_first: u32) -> u32 {
+    return 1u << (from_first % CUTS_PER_WORD);
 }
 
 fn empty_cut(row: u32, strip: u32, column: i32) {
-    cuts[word_at(row, strip, column)] = 0u;
+    cuts[words_at(row, strip, u32(column - first_reached(strip)))] = vec2u(0u);
 }
 
 fn is_cut_at(row: u32, strip: u32, column: i32) -> bool {
-    return (cuts[word_at(row, strip, column)] & bit_of(strip, column)) != 0u;
+    let from_first = u32(column - first_reached(strip));
+    return (cuts[words_at(row, strip, from_first)].y & bit_of(from_first)) != 0u;
 }
 
-// Notes some derived columns that are still open.
-fn note_columns(place: SegmentPlace, first: i32, last: i32) {
-    for (var column = first; column <= last; column++) {
-        if partials[partial_at(place.row, place.strip, column)].a < HIDING_ALPHA {
-            cuts[word_at(place.row, place.strip, column)] |= bit_of(place.strip, column);
+// Notes how opaque a derived column has become.
+fn note_alpha(row: u32, strip: u32, column: i32, alpha: f32) {
+    let from_first = u32(column - first_reached(strip));
+    cuts[words_at(row, strip, from_first)].x |= select(0u, bit_of(from_first), alpha >= HIDING_ALPHA);
+}
+
+// Bits from one on to another.
+fn bits_between(first: u32, last: u32) -> u32 {
+    return (0xffffffffu << first) & (0xffffffffu >> (CUTS_PER_WORD - 1u - last));
+}
+
+// Notes what a ray leaves out that is opaque: the derived columns of the slabs behind, and the one after each, that still let
+// light through and in whose slab the ray would have met something.
+fn note_cut(row: u32, strip: u32, column: i32, ray: Ray, ended: SegmentedRay) {
+    let furthest = slab_at(ray_depth_m(ray, f32(ray.sample_count) - 0.5));
+    let is_cut = ended.state.transmittance <= 1.0 - parameters.termination_alpha && ray.sample_count > 0u;
+    let first = u32(column - ended.slab - first_reached(strip));
+    let last = min(u32(column - furthest + 1 - first_reached(strip)), reach() - 1u);
+    let walk = start_walk(ray.first, ray.step);
+    var word = first / CUTS_PER_WORD;
+    while is_cut && word <= last / CUTS_PER_WORD {
+        let start = word * CUTS_PER_WORD;
+        let at = words_at(row, strip, start);
+        let bits = bits_between(max(first, start) - start, min(last - start, CUTS_PER_WORD - 1u));
+        let held = cuts[at];
+        var open = bits & ~(held.x | held.y);
+        var cut = 0u;
+        while open != 0u {
+            let from_first = start + firstTrailingBit(open);
+            let slab = column - first_reached(strip) - i32(from_first);
+            let begin = max(start_of_slab(ray, min(slab + 1, view.pair.nearest)), ended.next);
+            let end = end_of_slab(ray, max(slab, view.pair.furthest));
+            let run = next_run(walk, begin, end, 0.0);
+            leaps += run.map_reads;
+            cut |= select(0u, bit_of(from_first), run.begin < run.end);
+            open &= open - 1u;
         }
+        cuts[at].y |= cut;
+        word++;
     }
-}
-
-// Notes what a ray leaves out that is opaque: the derived columns of the slabs behind and the one after them. `noted` are the
-// first and the last that have been looked at for rays of later columns; what these left open is noted. Returns the first and
-// the last by now.
-fn note_cut(place: SegmentPlace, ray: Ray, ended: SegmentedRay, noted: vec2i) -> vec2i {
-    let first = place.column - ended.slab;
-    let last = place.column - slab_at(ray_depth_m(ray, f32(ray.sample_count) - 0.5)) + 1;
-    let is_cut = ended.state.transmittance <= 1.0 - parameters.termination_alpha && last >= first;
-    if !is_cut || ray.sample_count == 0u {
-        return noted;
-    }
-    let is_first = noted.x > noted.y;
-    note_columns(place, first, select(noted.x - 1, last, is_first));
-    note_columns(place, select(noted.y, last, is_first) + 1, last);
-    return vec2i(min(noted.x, first), max(noted.y, last));
 }

@@ -20,13 +20,8 @@ struct Progress {
     left: vec2u,
     // 1 if the last of them is begun.
     is_begun: u32,
-    // The first and the last derived column that have been looked at for what rays leave out.
-    noted: vec2i,
     ray: SegmentedRay,
 }
-
-// No columns.
-const NOTHING_NOTED = vec2i(0x7fffffff, -0x7fffffff);
 
 @group(3) @binding(3) var<storage, read_write> progress: array<Progress>;
 
@@ -56,12 +51,10 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     var left = strips.bands[band].listed;
     var under_way: SegmentedRay;
     var is_begun = false;
-    var noted = NOTHING_NOTED;
     if is_resuming {
         left = progress[at].left;
         under_way = progress[at].ray;
         is_begun = progress[at].is_begun == 1u;
-        noted = progress[at].noted;
     }
     empty_partials(row, strip, select(reach(), 0u, is_resuming));
     while any(left != vec2u(0u)) && !is_spent() {
@@ -76,7 +69,7 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
         under_way = cast_segments(ray, view.pair.furthest, place, under_way);
         is_begun = under_way.state.is_finished == 0u;
         if !is_begun {
-            noted = note_cut(place, ray, under_way, noted);
+            note_cut(row, strip, column, ray, under_way);
             left &= columns_before(offset);
             if x >= 0 && x < i32(view.width) && ray.sample_count > 0u {
                 store(vec2u(u32(x), row), finish_ray(ray, under_way.state));
@@ -89,7 +82,7 @@ fn cast_strips(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
         leaps = atomicLoad(&strips.bands[band].leaps) - leaps_before;
     }
     if any(left != vec2u(0u)) {
-        progress[at] = Progress(left, select(0u, 1u, is_begun), noted, under_way);
+        progress[at] = Progress(left, select(0u, 1u, is_begun), under_way);
         atomicAdd(&strips.unfinished, 1u);
     } else {
         progress[at].left = vec2u(0u);

@@ -1,3 +1,4 @@
+import package::lib::cuts::{note_alpha};
 import package::lib::join::{join};
 import package::lib::ray_state::{FIRST_HIT_ALPHA};
 import package::lib::strips::{partial_at, partial_depths_m, partials};
@@ -15,7 +16,9 @@ struct SegmentPlace {
 fn put_segment(place: SegmentPlace, slab: i32, segment: vec4f, depth_m: f32) {
     let at = partial_at(place.row, place.strip, place.column - slab);
     let held = partials[at];
-    partials[at] = join(held, segment);
+    let joint = join(held, segment);
+    partials[at] = joint;
+    note_alpha(place.row, place.strip, place.column - slab, joint.a);
     if held.a < FIRST_HIT_ALPHA {
         partial_depths_m[at] = depth_m;
     }

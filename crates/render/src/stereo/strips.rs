@@ -25,7 +25,7 @@ const COLOR_BYTES: u64 = 16;
 const DEPTH_BYTES: u64 = 4;
 
 /// Bytes of a row of a strip between dispatches: `Progress` of `cast_strips.wgsl`.
-const PROGRESS_BYTES: u64 = 160;
+const PROGRESS_BYTES: u64 = 144;
 
 /// Loop iterations of an invocation after which a GPU's dispatch ends, so that none runs for seconds.
 const GPU_ITERATIONS: u32 = 1 << 18;
@@ -39,11 +39,11 @@ const MOST_ITERATIONS_PER_SAMPLE: u32 = 5;
 /// Bytes of a strip in a band of rows, and of what stands before all: `Strips` of `lib/strip_bands.wgsl`.
 const BAND_BYTES: u64 = 16;
 
-/// Bytes of whether rays ended that derived pixels would have needed, a bit for each: a word of `lib/cuts_kept.wgsl`.
-const CUT_BYTES: u64 = 4;
+/// Bytes of what is known of 32 derived columns: two words of `lib/cuts_kept.wgsl`.
+const CUT_BYTES: u64 = 8;
 
-/// Bits of it.
-const CUTS_PER_WORD: u64 = 8 * CUT_BYTES;
+/// Derived columns of that.
+const CUTS_PER_WORD: u64 = 32;
 
 /// Files of kernels that do not ask for what ended rays leave out.
 const CUTS_NONE: &[(&str, &str)] =
