@@ -193,6 +193,12 @@ impl CastParameters {
         Self { sampling_factor, ..self.clone() }
     }
 
+    /// Whether rays stop at, or fade behind, what they hit first, so that what is in front of it can be leapt over from frame to
+    /// frame ([`first_hits`](crate::first_hits)).
+    pub fn has_first_hits(&self) -> bool {
+        matches!(self.mode, Mode::Composite | Mode::Isosurface { .. })
+    }
+
     /// One voxel length, metres.
     pub fn voxel_length_m(&self) -> f64 {
         let world_from_texture = self.texture_from_world.inverse().matrix3;

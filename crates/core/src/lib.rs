@@ -7,6 +7,7 @@
 pub mod budget;
 pub mod cast;
 pub mod detail;
+pub mod first_hits;
 pub mod gradient_map;
 pub mod head;
 pub mod image;

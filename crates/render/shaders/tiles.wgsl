@@ -1,5 +1,6 @@
 import package::lib::ray::{ray_of_pixel};
 import package::lib::skip::{next_run, start_walk};
+import package::lib::start::{start_of};
 import package::lib::target::{store_blank};
 import package::lib::tile_list::{GROUPS_PER_ROW, tile_list, tile_of_pixel};
 import package::lib::view::{BAND_ROWS, first_pixel_of_group, is_outside_piece, view};
@@ -22,7 +23,7 @@ fn list_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id)
     }
     // Samples from `sample_limit` on are not looked at: they count as something.
     let end = min(ray.sample_count, view.sample_limit);
-    let run = next_run(start_walk(ray.first, ray.step), 0u, end, 0.0);
+    let run = next_run(start_walk(ray.first, ray.step), start_of(ray, pixel), end, 0.0);
     if run.begin >= run.end && end == ray.sample_count {
         store_blank(pixel, run.map_reads);
         return;

@@ -20,6 +20,15 @@ pub(crate) enum Tiles {
     Listed,
 }
 
+impl Tiles {
+    fn file(self) -> &'static str {
+        match self {
+            Self::All => TILES_ALL,
+            Self::Listed => TILES_LISTED,
+        }
+    }
+}
+
 /// Which files make up a kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Variant {
@@ -35,6 +44,7 @@ pub(crate) struct Variant {
     tiles: &'static str,
     record: &'static str,
     front: &'static str,
+    start: &'static str,
 }
 
 impl Variant {
@@ -46,7 +56,7 @@ impl Variant {
             Mode::MinIp => ("lib/accumulate_minip", false),
             Mode::Mean => ("lib/accumulate_mean", false),
             Mode::XRay => (XRAY, false),
-            Mode::Isosurface { .. } => ("lib/accumulate_first_hit", true),
+            Mode::Isosurface { .. } => (FIRST_HIT, true),
         };
         let is_quads = sources.volume.format() == TexelFormat::Rgba8UnormQuads;
         Self {
@@ -79,18 +89,16 @@ impl Variant {
             },
             magnitude: if sources.gradient_map.is_some() { MAGNITUDE_MAP } else { MAGNITUDE_ESTIMATED },
             resume: RESUME_WHOLE,
-            tiles: match tiles {
-                Tiles::All => TILES_ALL,
-                Tiles::Listed => TILES_LISTED,
-            },
+            tiles: tiles.file(),
             record: RECORD_NONE,
             front: FRONT_NONE,
+            start: START_AT_ONCE,
         }
     }
 
     /// The kernel of a composite that goes on behind what its target holds: it leaves pixels as they are whose rays miss.
     pub(crate) fn behind(self) -> Self {
-        Self { front: FRONT_PICTURE, tiles: TILES_ALL, ..self }
+        Self { front: FRONT_PICTURE, tiles: TILES_ALL, record: RECORD_NONE, start: START_AT_ONCE, ..self }
     }
 
     pub(crate) fn is_behind(self) -> bool {
@@ -99,11 +107,20 @@ impl Variant {
 
     /// The kernel that keeps layers of emission and absorption beside the picture.
     pub(crate) fn with_layers(self) -> Self {
-        Self { record: RECORD_LAYERS, ..self }
+        Self { record: RECORD_LAYERS, start: START_AT_ONCE, ..self }
     }
 
     pub(crate) fn keeps_layers(self) -> bool {
         self.record == RECORD_LAYERS
+    }
+
+    /// The kernel whose rays start by what the last picture saw first, and that notes what this one does.
+    pub(crate) fn leaping(self, tiles: Tiles) -> Self {
+        Self { record: RECORD_NEAREST, start: START_BY_TILE, tiles: tiles.file(), ..self }
+    }
+
+    pub(crate) fn leaps(&self) -> bool {
+        self.start == START_BY_TILE
     }
 
     /// The kernel that casts rays in several dispatches.
@@ -162,9 +179,10 @@ impl Variant {
                             tiles,
                             record: RECORD_NONE,
                             front: FRONT_NONE,
+                            start: START_AT_ONCE,
                         });
                     }
-                    let (accumulator, classifier) = ("lib/accumulate_first_hit", "lib/classify_isovalue");
+                    let (accumulator, classifier) = (FIRST_HIT, "lib/classify_isovalue");
                     all.push(Self {
                         accumulator,
                         classifier,
@@ -178,6 +196,7 @@ impl Variant {
                         tiles,
                         record: RECORD_NONE,
                         front: FRONT_NONE,
+                        start: START_AT_ONCE,
                     });
                 }
             }
@@ -198,6 +217,7 @@ impl Variant {
                     tiles,
                     record: RECORD_NONE,
                     front: FRONT_NONE,
+                    start: START_AT_ONCE,
                 });
             }
         }
@@ -220,6 +240,11 @@ impl Variant {
         };
         let on_quads: Vec<Self> = all.iter().map(on_quads).collect();
         all.extend(on_quads);
+        let is_leaping = |variant: &&Self| {
+            [COMPOSITE, FIRST_HIT].contains(&variant.accumulator) && variant.gradient == gradients[0]
+        };
+        let leaping: Vec<Self> =
+            all.iter().filter(is_leaping).map(|variant| variant.leaping(Tiles::Listed)).collect();
         let is_composite = |variant: &&Self| {
             variant.accumulator == COMPOSITE
                 && variant.gradient != gradients[1]
@@ -228,12 +253,13 @@ impl Variant {
         let composites: Vec<Self> = all.iter().filter(is_composite).copied().collect();
         all.extend(composites.iter().map(|variant| variant.with_layers()));
         all.extend(composites.iter().map(|variant| variant.behind()));
+        all.extend(leaping);
         let in_parts: Vec<Self> = all.iter().map(|variant| variant.in_parts()).collect();
         all.extend(in_parts);
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 14] {
+    fn choices(&self) -> [(&'static str, &'static str); 15] {
         let (cast_segments, join) = match self.accumulator {
             XRAY => ("lib/cast_integrals", "lib/join_sum"),
             _ => ("lib/cast_segments", "lib/join_over"),
@@ -251,6 +277,7 @@ impl Variant {
             ("lib/tiles", self.tiles),
             ("lib/record", self.record),
             ("lib/front", self.front),
+            ("lib/start", self.start),
             ("lib/cast_segments", cast_segments),
             ("lib/join", join),
         ]
@@ -266,11 +293,15 @@ const TILES_ALL: &str = "lib/tiles_all";
 const TILES_LISTED: &str = "lib/tiles_listed";
 const RECORD_NONE: &str = "lib/record_none";
 const RECORD_LAYERS: &str = "lib/record_layers";
+const RECORD_NEAREST: &str = "lib/record_nearest";
+const START_AT_ONCE: &str = "lib/start_at_once";
+const START_BY_TILE: &str = "lib/start_by_tile";
 const FRONT_NONE: &str = "lib/front_none";
 const FRONT_PICTURE: &str = "lib/front_picture";
 const SKIP_NONE: &str = "lib/skip_none";
 const SKIP_BLOCKS: &str = "lib/skip_blocks";
 const COMPOSITE: &str = "lib/accumulate_composite";
+const FIRST_HIT: &str = "lib/accumulate_first_hit";
 const XRAY: &str = "lib/accumulate_xray";
 
 /// Loop iterations that a step along a ray costs at most where each of a group of eight rays in lockstep waits while the
@@ -432,7 +463,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 592);
+        assert_eq!(variants.len(), 692);
     }
 
     #[test]
@@ -459,8 +490,8 @@ mod tests {
             ("lib/shade_shadow", "SHADING_STEP", cast::SHADING_STEP),
             ("lib/shade_ambient", "AMBIENT_RADIUS", cast::AMBIENT_RADIUS),
             ("lib/accumulate_composite", "FIRST_HIT_ALPHA", cast::FIRST_HIT_ALPHA),
-            ("lib/accumulate_first_hit", "BISECTIONS", cast::BISECTIONS as f32),
-            ("lib/accumulate_first_hit", "SURFACE_LIFT", cast::SURFACE_LIFT),
+            (FIRST_HIT, "BISECTIONS", cast::BISECTIONS as f32),
+            (FIRST_HIT, "SURFACE_LIFT", cast::SURFACE_LIFT),
             ("lib/classify_isovalue", "OPAQUE_LOG2", OPAQUE_LOG2),
         ];
         for (file, name, value) in expected {

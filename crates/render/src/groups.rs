@@ -18,7 +18,7 @@ pub(crate) struct GroupLayouts {
     pub(crate) frame: wgpu::BindGroupLayout,
     /// Volume, tables and maps.
     pub(crate) volume: wgpu::BindGroupLayout,
-    /// Picture, rays under way, listed tiles, layers and the picture in front.
+    /// Picture, rays under way, listed tiles, layers, the picture in front, where rays start and what they see first.
     pub(crate) target: wgpu::BindGroupLayout,
 }
 
@@ -51,6 +51,8 @@ impl GroupLayouts {
             storage_texture_array(wgpu::TextureFormat::Rgba32Uint),
             picture,
             picture,
+            picture,
+            storage_buffer(4),
         ];
         Self {
             frame: layout(device, "frame", &[uniform::<CastUniform>(), uniform::<ViewUniform>()]),

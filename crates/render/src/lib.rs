@@ -5,6 +5,7 @@
 
 mod buffers;
 mod cast_pass;
+mod first_hits;
 pub mod gpu;
 mod gradient_map;
 mod groups;

@@ -5,14 +5,14 @@ use crate::gpu::{Gpu, GpuError};
 use crate::groups::Bindings;
 use crate::renderer::{Prepared, Renderer};
 use crate::stamps::Stamps;
-use crate::tile_pass::{TileList, TilePass};
+use crate::tile_pass::{Listing, TileList, TilePass};
 use crate::uniforms::ViewUniform;
 
 /// What the pieces of a picture have in common.
 pub(crate) struct Picture<'a> {
     pub(crate) bindings: Bindings<'a>,
-    /// What lists the tiles to cast; without it all are.
-    pub(crate) list: Option<(&'a TilePass, &'a TileList)>,
+    /// What lists the tiles to cast, and by what; without it all are.
+    pub(crate) list: Option<(&'a TilePass, &'a TileList, Listing)>,
 }
 
 impl Picture<'_> {
@@ -26,13 +26,13 @@ impl Picture<'_> {
         squares: [u32; 2],
         stamps: Stamps<'_>,
     ) {
-        let Some((tile_pass, list)) = self.list else {
+        let Some((tile_pass, list, listing)) = self.list else {
             let workgroups = Workgroups::Counted(squares);
             return cast_pass::dispatch(encoder, pipeline, &self.bindings, workgroups, stamps);
         };
         let workgroups = Workgroups::Listed(&list.groups);
         if first_sample == 0 {
-            tile_pass.dispatch(encoder, list, &self.bindings, squares, stamps.of_first());
+            tile_pass.dispatch(encoder, (list, listing), &self.bindings, squares, stamps.of_first());
             cast_pass::dispatch(encoder, pipeline, &self.bindings, workgroups, stamps.of_last());
         } else {
             cast_pass::dispatch(encoder, pipeline, &self.bindings, workgroups, stamps);

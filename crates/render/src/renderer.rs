@@ -2,6 +2,7 @@
 
 use crate::buffers::storage;
 use crate::cast_pass::{self, Tiles, Variant, VariantPipelines};
+use crate::first_hits::{GpuFirstHits, StartPass};
 use crate::gpu::{Gpu, GpuError};
 use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
@@ -15,7 +16,7 @@ use crate::stereo::{
     LayerFormat, LayerPass, NovelViewPass, PairTilePass, Quality, RepairPass, Repairs, StripPass,
 };
 use crate::target::{LAYERS, Target, target_texture};
-use crate::tile_pass::{self, TileList, TilePass};
+use crate::tile_pass::{Listing, TileList, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
 use half::f16;
@@ -39,6 +40,9 @@ pub struct Renderer {
     groups: GroupLayouts,
     pub(crate) casts: VariantPipelines,
     pub(crate) tile_pass: TilePass,
+    pub(crate) start_pass: StartPass,
+    /// Scenes that have been prepared.
+    scenes: u64,
     /// That of the last picture.
     tile_list: Option<TileList>,
     /// Rays of the last picture that was cast in parts.
@@ -58,8 +62,8 @@ pub struct Renderer {
     no_layers: wgpu::Texture,
     /// Copy of the picture that the last cast went on behind.
     front: Target,
-    /// Stand where a cast keeps no rays and lists no tiles.
-    pub(crate) unused: [wgpu::Buffer; 2],
+    /// Stand where a cast keeps no rays, lists no tiles and notes no first hits.
+    pub(crate) unused: [wgpu::Buffer; 3],
     pacer: Pacer,
 }
 
@@ -88,7 +92,10 @@ impl<'a> Sources<'a> {
 pub struct Prepared {
     pub(crate) parameters: CastParameters,
     pub(crate) variant: Variant,
-    pub(crate) lists_tiles: bool,
+    /// By what tiles are listed, if they are.
+    pub(crate) listing: Option<Listing>,
+    /// What volume is shown with what settings: another number for each that is prepared.
+    pub(crate) scene: u64,
     pub(crate) iterations_per_sample: u32,
     pub(crate) iterations_of_shading: u32,
     cast_uniform: CastUniform,
@@ -120,6 +127,7 @@ impl Renderer {
         let groups = GroupLayouts::new(&gpu.device);
         let casts = VariantPipelines::of_views(&gpu.device, &groups);
         let tile_pass = TilePass::new(&gpu.device, &groups)?;
+        let start_pass = StartPass::new(&gpu.device)?;
         let zeros = Target::zeros(gpu);
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("trilinear"),
@@ -143,12 +151,14 @@ impl Renderer {
         let no_layers = target_texture(gpu, "no layers", wgpu::TextureFormat::Rgba32Uint, [1, 1], 1);
         let front = Target::new(gpu, [1, 1])?;
         let unused =
-            [(); 2].map(|()| storage(&gpu.device, "unused", RAY_STATE_BYTES, wgpu::BufferUsages::empty()));
+            [(); 3].map(|()| storage(&gpu.device, "unused", RAY_STATE_BYTES, wgpu::BufferUsages::empty()));
         gpu.check()?;
         Ok(Self {
             groups,
             casts,
             tile_pass,
+            start_pass,
+            scenes: 0,
             tile_list: None,
             states: None,
             zeros,
@@ -177,8 +187,8 @@ impl Renderer {
         sources: &Sources<'_>,
         parameters: CastParameters,
     ) -> Result<Prepared, GpuError> {
-        let lists_tiles = tile_pass::pays(gpu, &parameters, &sources.leap);
-        let tiles = if lists_tiles { Tiles::Listed } else { Tiles::All };
+        let listing = Listing::for_cast(gpu, &parameters, &sources.leap);
+        let tiles = if listing.is_some() { Tiles::Listed } else { Tiles::All };
         let variant = Variant::of(&parameters, sources, tiles);
         self.casts.pipeline(gpu, variant)?;
         let Sources { volume, gradient_map, leap } = sources;
@@ -217,10 +227,12 @@ impl Renderer {
             ],
         );
         gpu.check()?;
+        self.scenes += 1;
         Ok(Prepared {
             parameters,
             variant,
-            lists_tiles,
+            listing,
+            scene: self.scenes,
             iterations_per_sample,
             iterations_of_shading,
             cast_uniform,
@@ -284,7 +296,36 @@ impl Renderer {
         Ok(Prepared {
             parameters: prepared.parameters.clone(),
             variant,
-            lists_tiles: false,
+            listing: None,
+            view_uniform,
+            frame,
+            volume: prepared.volume.clone(),
+            ..*prepared
+        })
+    }
+
+    /// The same, cast with rays that leap to what the last picture saw first ([`Renderer::render_after`]) into targets that have room
+    /// for that ([`Target::with_first_hits`]). Neither with layers nor behind anything; modes without first hits are cast as before.
+    ///
+    /// # Errors
+    /// A kernel that the driver refuses, no memory, a lost device.
+    pub fn leaping(&mut self, gpu: &Gpu, prepared: &Prepared) -> Result<Prepared, GpuError> {
+        let has_first_hits = prepared.parameters.has_first_hits();
+        let may_leap = has_first_hits && !prepared.variant.is_behind() && !prepared.variant.keeps_layers();
+        let (variant, listing) = if may_leap {
+            let listing = Listing::of_leaping(gpu, prepared.listing);
+            let tiles = if listing.is_some() { Tiles::Listed } else { Tiles::All };
+            (prepared.variant.leaping(tiles), listing)
+        } else {
+            (prepared.variant, prepared.listing)
+        };
+        self.casts.pipeline(gpu, variant)?;
+        let (view_uniform, frame) = self.frame(gpu, &prepared.cast_uniform);
+        gpu.check()?;
+        Ok(Prepared {
+            parameters: prepared.parameters.clone(),
+            variant,
+            listing,
             view_uniform,
             frame,
             volume: prepared.volume.clone(),
@@ -354,12 +395,56 @@ impl Renderer {
         views: &[View],
         targets: &mut [Target],
     ) -> Result<(), GpuError> {
+        self.render_after(gpu, prepared, views, targets, &[])
+    }
+
+    /// The same, with rays that leap to what the last pictures saw first, one for each view as far as there are any. They do if both
+    /// were prepared for that as one scene, and cast into targets that have room for it.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    ///
+    /// # Panics
+    /// As [`Renderer::render`].
+    pub fn render_after(
+        &mut self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        views: &[View],
+        targets: &mut [Target],
+        last: &[Target],
+    ) -> Result<(), GpuError> {
         assert_eq!(views.len(), targets.len(), "one target per view");
-        for (view, target) in views.iter().zip(targets) {
+        let last = last.iter().map(Some).chain(std::iter::repeat(None));
+        for ((view, target), last) in views.iter().zip(targets).zip(last) {
             assert_eq!(view.size, target.size(), "a target has the size of its view");
+            let last = last.and_then(|last| last.first_hits.as_ref());
+            if let Some(hits) = &mut target.first_hits {
+                self.find_starts(gpu, (prepared, view), hits, last);
+            }
             self.cast(gpu, prepared, view, target)?;
+            if let Some(hits) = &mut target.first_hits {
+                hits.note(prepared, view);
+            }
         }
         Ok(())
+    }
+
+    /// Finds where the rays of a view start that is cast next, if they are to leap.
+    fn find_starts(
+        &self,
+        gpu: &Gpu,
+        picture: (&Prepared, &View),
+        hits: &mut GpuFirstHits,
+        last: Option<&GpuFirstHits>,
+    ) {
+        hits.forget();
+        if !picture.0.variant.leaps() {
+            return;
+        }
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.start_pass.encode(gpu, &mut encoder, picture, hits, last);
+        gpu.queue.submit([encoder.finish()]);
     }
 
     /// Casts views into targets made for them, and reads the pictures back.
@@ -416,7 +501,7 @@ impl Renderer {
         self.layer_passes.entry((format, quality)).or_insert_with(make)
     }
 
-    /// The bindings of a target, of the rays that are kept, of the tiles that are listed and of what is in front.
+    /// The bindings of a target, of the rays that are kept, of the tiles that are listed, of what is in front and of first hits.
     pub(crate) fn target_group(
         &self,
         gpu: &Gpu,
@@ -425,6 +510,10 @@ impl Renderer {
     ) -> wgpu::BindGroup {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let layers = target.layers.as_ref().unwrap_or(&self.no_layers);
+        let (starts, nearness) = match &target.first_hits {
+            Some(hits) => (&hits.starts, &hits.nearness),
+            None => (&self.front.depth, &self.unused[2]),
+        };
         bind(
             &gpu.device,
             &self.groups.target,
@@ -439,6 +528,8 @@ impl Renderer {
                 })),
                 wgpu::BindingResource::TextureView(&view(&self.front.color)),
                 wgpu::BindingResource::TextureView(&view(&self.front.depth)),
+                wgpu::BindingResource::TextureView(&view(starts)),
+                nearness.as_entire_binding(),
             ],
         )
     }
@@ -487,12 +578,13 @@ impl Renderer {
         }
         let states = self.states(gpu, state_row_bytes * u64::from(kept_rows));
         let kept_list = self.tile_list.take();
-        let list = prepared.lists_tiles.then(|| self.tile_pass.list(&gpu.device, view.size, kept_list));
+        let list = prepared.listing.map(|_| self.tile_pass.list(&gpu.device, view.size, kept_list));
         let tiles = list.as_ref().map_or(&self.unused[1], |list| &list.tiles);
         let target_group = self.target_group(gpu, target, [&states, tiles]);
         let bindings = Bindings { frame: &prepared.frame, volume: &prepared.volume, target: &target_group };
         let tile_pass = self.tile_pass.clone();
-        let picture = Picture { bindings, list: list.as_ref().map(|list| (&tile_pass, list)) };
+        let listed = list.as_ref().zip(prepared.listing);
+        let picture = Picture { bindings, list: listed.map(|(list, by)| (&tile_pass, list, by)) };
 
         let reads = cast_pass::reads_per_sample(parameters);
         let bands = band_samples(parameters, view);

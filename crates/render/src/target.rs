@@ -1,8 +1,10 @@
 //! Where a view is cast to: colour, depth and sample counts of one picture, and their way back to the host.
 
+use crate::first_hits::GpuFirstHits;
 use crate::gpu::{Gpu, GpuError};
 use crate::readback::read_texture;
 use crate::squares::Squares;
+use wheatstone_core::first_hits::FirstHits;
 use wheatstone_core::image::Image;
 use wheatstone_core::reference::{Cast, Reads};
 use wheatstone_core::view::PixelRect;
@@ -39,6 +41,8 @@ pub struct Target {
     pub(crate) depth: wgpu::Texture,
     /// What rays pass through, in the format of `lib/layer_words.wgsl`, if casts are to keep that.
     pub(crate) layers: Option<wgpu::Texture>,
+    /// What the picture saw first and where its rays started, if casts are to leap.
+    pub(crate) first_hits: Option<GpuFirstHits>,
     /// What is not blank at most.
     pub(crate) drawn: Squares,
 }
@@ -56,7 +60,7 @@ impl Target {
         let [color, depth] = ["color target", "depth target"]
             .map(|label| target_texture(gpu, label, Self::COLOR_FORMAT, size, 1));
         gpu.check()?;
-        Ok(Self { size, color, depth, layers: None, drawn: Squares::default() })
+        Ok(Self { size, color, depth, layers: None, first_hits: None, drawn: Squares::default() })
     }
 
     /// The same with room for the layers of emission and absorption that casts prepared for them keep.
@@ -66,6 +70,17 @@ impl Target {
     pub fn with_layers(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         let target = Self::new(gpu, size)?;
         Ok(Self { layers: Some(layer_texture(gpu, size)?), ..target })
+    }
+
+    /// The same with room for what casts that leap to first hits note ([`Renderer::leaping`](crate::Renderer::leaping)).
+    ///
+    /// # Errors
+    /// As [`Target::new`].
+    pub fn with_first_hits(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        let target = Self::new(gpu, size)?;
+        let first_hits = Some(GpuFirstHits::new(gpu, size));
+        gpu.check()?;
+        Ok(Self { first_hits, ..target })
     }
 
     /// The buffer of zeros that [`Target::blank`] copies.
@@ -129,6 +144,16 @@ impl Target {
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// Reads back what the picture saw first, and where the rays of each tile started, metres; nothing if it was not cast so.
+    ///
+    /// # Errors
+    /// No memory, a lost or hung device.
+    pub fn read_first_hits(&self, gpu: &Gpu) -> Result<Option<(FirstHits, Vec<f32>)>, GpuError> {
+        let Some(hits) = &self.first_hits else { return Ok(None) };
+        let Some(seen) = hits.read(gpu)? else { return Ok(None) };
+        Ok(Some((seen, hits.read_starts(gpu)?)))
     }
 
     /// Reads the picture back.

@@ -12,7 +12,6 @@ use crate::stamps::Stamps;
 use wgpu::BufferUsages;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::scene::Mode;
 
 /// Pixels of a tile along x and y: `TILE` of `lib/tile_list.wgsl`.
 pub(crate) const TILE: [u32; 2] = [4, 2];
@@ -20,14 +19,38 @@ pub(crate) const TILE: [u32; 2] = [4, 2];
 /// Workgroups of a cast along x: `GROUPS_PER_ROW` of `lib/tile_list.wgsl`.
 pub(crate) const GROUPS_PER_ROW: u32 = 256;
 
-/// The files of the kernel's slots.
-const CHOICES: [(&str, &str); 2] =
-    [("lib/skip", "lib/skip_blocks"), ("lib/blocks", "lib/blocks_by_distance")];
+/// By what tiles are listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Listing {
+    /// Occupied blocks.
+    Blocks,
+    /// What the last picture saw first.
+    Starts,
+    /// Both.
+    BlocksAndStarts,
+}
 
-/// Whether to list tiles for a cast: on software Vulkan, where rays that meet no occupied block leave blank pixels.
-pub(crate) fn pays(gpu: &Gpu, parameters: &CastParameters, leap: &Leap<'_>) -> bool {
-    let leaves_blank = matches!(parameters.mode, Mode::Composite | Mode::Isosurface { .. });
-    gpu.description().is_software && leaves_blank && matches!(leap, Leap::EmptyBlocks(_))
+impl Listing {
+    const ALL: [Self; 3] = [Self::Blocks, Self::Starts, Self::BlocksAndStarts];
+
+    /// Whether and how to list the tiles of a cast: on software Vulkan, where rays that meet no occupied block leave blank pixels.
+    pub(crate) fn for_cast(gpu: &Gpu, parameters: &CastParameters, leap: &Leap<'_>) -> Option<Self> {
+        let leaves_blank = parameters.has_first_hits() && matches!(leap, Leap::EmptyBlocks(_));
+        (gpu.description().is_software && leaves_blank).then_some(Self::Blocks)
+    }
+
+    /// The same of the cast that leaps by what the last picture saw.
+    pub(crate) fn of_leaping(gpu: &Gpu, listing: Option<Self>) -> Option<Self> {
+        let by = if listing.is_some() { Self::BlocksAndStarts } else { Self::Starts };
+        gpu.description().is_software.then_some(by)
+    }
+
+    /// The files of the kernel's slots.
+    fn choices(self) -> [(&'static str, &'static str); 3] {
+        let skip = if self == Self::Starts { "lib/skip_none" } else { "lib/skip_blocks" };
+        let start = if self == Self::Blocks { "lib/start_at_once" } else { "lib/start_by_tile" };
+        [("lib/skip", skip), ("lib/blocks", "lib/blocks_by_distance"), ("lib/start", start)]
+    }
 }
 
 /// Tiles of a picture.
@@ -35,31 +58,35 @@ pub(crate) fn tiles_of([width, height]: [u32; 2]) -> u64 {
     u64::from(width.div_ceil(TILE[0])) * u64::from(height.div_ceil(TILE[1]))
 }
 
-/// The pipeline. Cheap to clone.
+/// The pipelines. Cheap to clone.
 #[derive(Debug, Clone)]
 pub(crate) struct TilePass {
     list_layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
+    /// In the order of [`Listing::ALL`].
+    pipelines: [wgpu::ComputePipeline; 3],
     /// Arguments of a cast of no tiles.
     no_groups: wgpu::Buffer,
 }
 
 impl TilePass {
-    /// Builds the pipeline; what the driver says against it comes with the next [`Gpu::check`].
+    /// Builds the pipelines; what the driver says against them comes with the next [`Gpu::check`].
     ///
     /// # Errors
     /// [`GpuError::Refused`] for files that make no module.
     pub(crate) fn new(device: &wgpu::Device, groups: &GroupLayouts) -> Result<Self, GpuError> {
         let list_layout = layout(device, "tile list", &[storage_buffer(12), storage_buffer(4)]);
         let layout = groups.pipeline_layout(device, "tiles", Some(&list_layout));
-        let files = KernelFiles { root: "tiles", choices: &CHOICES, entry_point: "list_tiles" };
-        let pipeline = build(device, Some(&layout), &files)?;
+        let [blocks, starts, both] = Listing::ALL.map(|listing| {
+            let choices = &listing.choices();
+            build(device, Some(&layout), &KernelFiles { root: "tiles", choices, entry_point: "list_tiles" })
+        });
+        let pipelines = [blocks?, starts?, both?];
         let no_groups = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("no workgroups"),
             contents: bytemuck::cast_slice(&[GROUPS_PER_ROW, 0, 1]),
             usage: BufferUsages::COPY_SRC,
         });
-        Ok(Self { list_layout, pipeline, no_groups })
+        Ok(Self { list_layout, pipelines, no_groups })
     }
 
     /// The list of a picture: the one given if it has room.
@@ -83,14 +110,15 @@ impl TilePass {
     pub(crate) fn dispatch(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        list: &TileList,
+        (list, listing): (&TileList, Listing),
         bindings: &Bindings<'_>,
         [squares_x, squares_y]: [u32; 2],
         stamps: Stamps<'_>,
     ) {
         encoder.copy_buffer_to_buffer(&self.no_groups, 0, &list.groups, 0, None);
         encoder.clear_buffer(&list.tiles, 0, Some(4));
-        let mut pass = bindings.begin_timed_pass(encoder, &self.pipeline, Some(&list.group), stamps);
+        let mut pass =
+            bindings.begin_timed_pass(encoder, &self.pipelines[listing as usize], Some(&list.group), stamps);
         pass.dispatch_workgroups(squares_x, squares_y, 1);
     }
 }
@@ -122,7 +150,7 @@ mod tests {
     use crate::shader::compose;
 
     #[test]
-    fn the_pipeline_builds_on_the_noop_device() {
+    fn the_pipelines_build_on_the_noop_device() {
         build_on_noop_device(|device| {
             TilePass::new(device, &GroupLayouts::new(device)).unwrap();
         });
@@ -130,7 +158,7 @@ mod tests {
 
     #[test]
     fn constants_are_those_of_the_kernel() {
-        let text = compose("tiles", &CHOICES).unwrap().text;
+        let text = compose("tiles", &Listing::Blocks.choices()).unwrap().text;
         for line in [
             format!("const TILE = vec2u({}u, {}u);", TILE[0], TILE[1]),
             format!("const GROUPS_PER_ROW: u32 = {GROUPS_PER_ROW}u;"),

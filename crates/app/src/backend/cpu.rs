@@ -204,6 +204,17 @@ impl<'v> CpuEngine<'v> {
         start.elapsed()
     }
 
+    pub(super) fn cast_after(&mut self, shot: Shot, last: &View, view: &View) -> Duration {
+        let Scene { parameters, .. } = &self.scenes[shot.0];
+        let aids = self.scenes[shot.0].aids();
+        let (_, seen) = self.caster.cast_leaping(parameters, &aids, last, None);
+        let start = Instant::now();
+        let (cast, _) = self.caster.cast_leaping(parameters, &aids, view, Some(&seen));
+        let time = start.elapsed();
+        self.casts = vec![cast];
+        time
+    }
+
     fn cast_detail(&self, scene: &Scene, detail: &Detail, view: &View) -> Cast {
         let slabs = detail.level_of_detail.slabs(view, &scene.parameters, 1 + self.coarser.len());
         slabs.iter().fold(Cast::nothing(view.size), |front, slab| {

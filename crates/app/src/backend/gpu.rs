@@ -39,6 +39,8 @@ pub(crate) struct GpuEngine {
     /// One for each view that was ever cast at a time; the last cast is in the first `cast_count`.
     targets: Vec<Target>,
     cast_count: usize,
+    /// What the last picture of [`GpuEngine::cast_after`] was cast to before.
+    last: Option<Target>,
     pub(super) upload: Duration,
 }
 
@@ -102,6 +104,7 @@ impl GpuEngine {
             scenes: Vec::new(),
             targets: Vec::new(),
             cast_count: 0,
+            last: None,
             upload,
         })
     }
@@ -139,6 +142,17 @@ impl GpuEngine {
         }
         let scene = self.scene(0, parameters, skipping)?;
         self.scenes.push(Scene { detail: Some(Detail { level_of_detail, coarser }), ..scene });
+        Ok(Shot(self.scenes.len() - 1))
+    }
+
+    pub(super) fn prepare_leaping(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+    ) -> Result<Shot, GpuError> {
+        let scene = self.scene(0, parameters, skipping)?;
+        let prepared = Arc::new(self.renderer.leaping(&self.gpu, &scene.prepared)?);
+        self.scenes.push(Scene { prepared, ..scene });
         Ok(Shot(self.scenes.len() - 1))
     }
 
@@ -264,6 +278,22 @@ impl GpuEngine {
         Ok(start.elapsed())
     }
 
+    pub(super) fn cast_after(&mut self, shot: Shot, last: &View, view: &View) -> Result<Duration, GpuError> {
+        let shown = match self.last.take().filter(|target| target.size() == last.size) {
+            Some(target) => target,
+            None => Target::with_first_hits(&self.gpu, last.size)?,
+        };
+        let shown = std::slice::from_mut(self.last.insert(shown));
+        let prepared = &self.scenes[shot.0].prepared;
+        self.renderer.render(&self.gpu, prepared, &[*last], shown)?;
+        self.fit_targets(&[*view])?;
+        let prepared = &self.scenes[shot.0].prepared;
+        let last = self.last.as_slice();
+        let start = Instant::now();
+        self.renderer.render_after(&self.gpu, prepared, &[*view], &mut self.targets[..1], last)?;
+        Ok(start.elapsed())
+    }
+
     pub(super) fn live(&mut self, shot: Shot) -> LiveEngine<'_> {
         let settings = Arc::clone(&self.scenes[shot.0].prepared);
         LiveEngine { gpu: &self.gpu, renderer: &mut self.renderer, settings }
@@ -292,7 +322,7 @@ impl GpuEngine {
         for (i, view) in views.iter().enumerate() {
             if self.targets.get(i).is_none_or(|target| target.size() != view.size) {
                 self.targets.truncate(i);
-                self.targets.push(Target::new(&self.gpu, view.size)?);
+                self.targets.push(Target::with_first_hits(&self.gpu, view.size)?);
             }
         }
         self.cast_count = views.len();

@@ -293,6 +293,26 @@ impl<'v> Engine<'v> {
         }
     }
 
+    /// As [`Engine::prepare`], for rays that leap to what the last picture saw first.
+    pub(crate) fn prepare_leaping(
+        &mut self,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+    ) -> Result<Shot, GpuError> {
+        match self {
+            Self::Gpu(engine) => engine.prepare_leaping(parameters, skipping),
+            Self::Cpu(engine) => Ok(engine.prepare(parameters, skipping)),
+        }
+    }
+
+    /// Casts a view of a leaping shot after another one; the time is that of the second.
+    pub(crate) fn cast_after(&mut self, shot: Shot, last: &View, view: &View) -> Result<Duration, GpuError> {
+        match self {
+            Self::Gpu(engine) => engine.cast_after(shot, last, view),
+            Self::Cpu(engine) => Ok(engine.cast_after(shot, last, view)),
+        }
+    }
+
     /// Casts every view; the time is that of the finished cast, without reading back.
     pub(crate) fn cast(&mut self, shot: Shot, views: &[View]) -> Result<Duration, GpuError> {
         match self {

@@ -1,5 +1,5 @@
-//! `bench detail`: what level of detail saves near and far, what it does to the picture, and how much of a cast comes before
-//! what is seen first.
+//! `bench detail`: what level of detail saves near and far, what leaping to what the last picture saw first does, and what both do to
+//! the picture.
 
 use super::bench::{Device, Opened, default_transfer, open};
 use crate::backend::{BackendChoice, Engine, Job, Shot, median, milliseconds};
@@ -11,6 +11,7 @@ use crate::skipping::{GradientMapName, Skipping};
 use crate::spec;
 use crate::transfer_spec::{self, TransferSpec};
 use clap::Args;
+use glam::{DAffine3, DQuat, DVec3};
 use serde_json::{Value, json};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::detail::LevelOfDetail;
@@ -25,12 +26,13 @@ use wheatstone_core::volume::StorageKind;
 /// Rays along each side of a pixel of the pictures that all are compared with.
 const RAYS_ACROSS: u32 = 4;
 
-/// Frame times and errors with and without level of detail, leaping over nothing and over empty blocks, from several distances.
+/// Frame times and errors with and without level of detail and leaping to the first hits of the last frame, skipping nothing and empty
+/// blocks, from several distances.
 ///
-/// Rows `first` are of casts whose rays end with the first visible sample: leaping to what was seen first in the last frame cannot
-/// save more than they take.
+/// Rows `leaps` are of casts whose rays start by what was seen first from where the head was before. Rows `first` are of casts whose rays
+/// end with the first visible sample: leaping to it cannot save more than they take.
 ///
-/// Each frame is made in every way in turn; times are medians. Rays end at an opacity of 0.99. Errors are DSSIM: from the picture at full
+/// Each frame is made in every way in turn, after the one from where the head was before, which is not timed; times are medians. Rays end at an opacity of 0.99. Errors are DSSIM: from the picture at full
 /// detail, and from one of sixteen rays per pixel and two samples per voxel.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
@@ -44,6 +46,14 @@ pub(crate) struct DetailArgs {
     /// Distances of the eye from the volume's centre, metres; its longest side is 1 m.
     #[arg(long, value_name = "M", value_delimiter = ',', default_value = "1.2,5", value_parser = spec::within(0.0..=1000.0))]
     distances: Vec<f64>,
+
+    /// How far the head has turned since the picture before, degrees.
+    #[arg(long, value_name = "DEG", default_value = "1.5", value_parser = spec::within(-180.0..=180.0), allow_negative_numbers = true)]
+    turn: f64,
+
+    /// How far it has moved sideways since then, metres.
+    #[arg(long, value_name = "M", default_value = "0.015", value_parser = spec::within(-10.0..=10.0), allow_negative_numbers = true)]
+    sideways: f64,
 
     /// Pixels that a voxel and a step cover about.
     #[arg(long, value_name = "PIXELS", default_value = "1", value_parser = spec::within(0.1..=100.0))]
@@ -84,6 +94,8 @@ enum What {
     Full,
     /// The picture with level of detail.
     Levels,
+    /// Rays from the first hits of a picture before.
+    Leaps,
     /// Rays up to the first visible sample.
     First,
 }
@@ -96,7 +108,7 @@ struct Way {
 }
 
 /// In the order of the table: the first is the measure of the others that leap over the same.
-const WHATS: [What; 3] = [What::Full, What::Levels, What::First];
+const WHATS: [What; 4] = [What::Full, What::Levels, What::Leaps, What::First];
 
 /// One line of the table.
 struct Row {
@@ -123,6 +135,8 @@ pub(crate) fn run(args: &DetailArgs) -> Result<(), Failure> {
             "size": args.size,
             "frames": args.frames,
             "pixels": args.pixels,
+            "turn_deg": args.turn,
+            "sideways_m": args.sideways,
             "rows": rows.iter().map(Row::to_json).collect::<Vec<_>>(),
         }));
     }
@@ -153,6 +167,7 @@ impl DetailArgs {
             .map(|way| match way.what {
                 What::Full => engine.prepare(&parameters, &way.skipping()),
                 What::Levels => engine.prepare_detail(&parameters, &way.skipping(), detail),
+                What::Leaps => engine.prepare_leaping(&parameters, &way.skipping()),
                 What::First => engine.prepare(&to_first, &way.skipping()),
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -173,15 +188,23 @@ impl DetailArgs {
     ) -> Result<Vec<Row>, Failure> {
         let view = self.view(distance_m, self.size)?;
         let bar = Bar::new(format!("{name}, {distance_m} m"), u64::from(self.frames));
+        let last = self.before(&view);
+        let cast = |engine: &mut Engine<'_>, way: Way, shot: Shot| match way.what {
+            What::Leaps => engine.cast_after(shot, &last, &view),
+            What::Full | What::Levels | What::First => {
+                engine.cast(shot, &[last])?;
+                engine.cast(shot, &[view])
+            }
+        };
         let mut casts = Vec::new();
-        for &shot in shots {
-            engine.cast(shot, &[view])?;
+        for (way, &shot) in ways().zip(shots) {
+            cast(engine, way, shot)?;
             casts.extend(engine.read()?);
         }
         let mut times_ms = vec![Vec::new(); shots.len()];
         for _ in 0..self.frames {
-            for (&shot, times_ms) in shots.iter().zip(&mut times_ms) {
-                times_ms.push(milliseconds(engine.cast(shot, &[view])?));
+            for ((way, &shot), times_ms) in ways().zip(shots).zip(&mut times_ms) {
+                times_ms.push(milliseconds(cast(engine, way, shot)?));
             }
             bar.advance();
         }
@@ -210,6 +233,13 @@ impl DetailArgs {
         ways().enumerate().map(row).collect()
     }
 
+    /// The view from where the head was before.
+    fn before(&self, view: &View) -> View {
+        let turn = DQuat::from_rotation_y(-self.turn.to_radians());
+        let now_from_before = DAffine3::from_rotation_translation(turn, -self.sideways * DVec3::X);
+        View { view_from_world: now_from_before.inverse() * view.view_from_world, ..*view }
+    }
+
     fn view(&self, distance_m: f64, size: [u32; 2]) -> Result<View, Failure> {
         let frustum = Frustum::from_fov_y(1.0, size).map_err(Failure::input)?;
         let orbit = Orbit { azimuth_rad: 0.4, elevation_rad: 0.2, distance_m };
@@ -231,6 +261,7 @@ impl What {
         match self {
             Self::Full => "full",
             Self::Levels => "levels",
+            Self::Leaps => "leaps",
             Self::First => "first",
         }
     }

@@ -292,7 +292,7 @@ fn bench_detail_compares_near_and_far() {
     let small =
         ["bench", "detail", "sphere.nrrd", "--size", "24x24", "--distances", "0.4,9", "--frames", "1"];
     let json = bench.run(&[&small[..], &["--backend", "cpu", "--json"]].concat()).json();
-    assert_eq!(keys(&json), ["device", "frames", "pixels", "rows", "size"]);
+    assert_eq!(keys(&json), ["device", "frames", "pixels", "rows", "sideways_m", "size", "turn_deg"]);
     let rows = json["rows"].as_array().unwrap();
     let row_keys = [
         "distance_m",
@@ -305,12 +305,13 @@ fn bench_detail_compares_near_and_far() {
         "volume",
         "what",
     ];
-    assert!(rows.len() == 12 && rows.iter().all(|row| keys(row) == row_keys));
-    for rows in rows.chunks(3) {
-        let [full, levels, first] = [0, 1, 2].map(|i| rows[i]["samples_per_ray"].as_f64().unwrap());
+    assert!(rows.len() == 16 && rows.iter().all(|row| keys(row) == row_keys));
+    for rows in rows.chunks(4) {
+        let [full, levels, leaps, first] = [0, 1, 2, 3].map(|i| rows[i]["samples_per_ray"].as_f64().unwrap());
         let is_far = rows[0]["distance_m"] == 9.0;
         assert!(if is_far { levels < 0.5 * full } else { levels == full }, "{rows:?}");
-        assert!(first < full && rows[2]["dssim_from_full"].is_null(), "{rows:?}");
+        assert!(leaps <= full && rows[2]["dssim_from_full"].as_f64().unwrap() < 1e-4, "{rows:?}");
+        assert!(first < full && rows[3]["dssim_from_full"].is_null(), "{rows:?}");
     }
     let table = bench.run(&[&small[..], &["--backend", "cpu"]].concat()).stdout;
     assert_eq!(table.lines().filter(|line| line.contains(" levels ")).count(), 4, "{table}");

@@ -14,6 +14,8 @@ pub(super) struct Pixels<L> {
     pub(super) alpha: L,
     /// Depth of the first hit, metres; infinite without one.
     pub(super) depth_m: L,
+    /// Depth of the first sample that is visible at all, metres; infinite without one, and of modes without first hits.
+    pub(super) visible_from_m: L,
     pub(super) taken: Taken<L>,
 }
 

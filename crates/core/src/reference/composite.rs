@@ -64,7 +64,7 @@ pub(super) fn each_visible<C: Classify, L: Lanes>(
     let needs_previous = C::VALUE_OFFSET != 0.0;
     let mut previous = zero;
     if needs_previous {
-        previous = context.value_at_outlined(token, ray.at(L::splat(token, C::VALUE_OFFSET - 1.0)));
+        previous = context.value_at_outlined(token, ray.at(ray.first_sample + (C::VALUE_OFFSET - 1.0)));
     }
     let mut is_transparent = walk.is_active;
     while walk.is_active.any() {

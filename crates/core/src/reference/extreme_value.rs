@@ -83,6 +83,7 @@ impl<B: Better> ExtremeValue<B> {
             rgb: lut_at(&context.parameters.lut, token, best).rgb,
             alpha: one,
             depth_m: ray.depth_m(best_index),
+            visible_from_m: L::splat(token, f32::INFINITY),
             taken: Taken { samples, map_reads: walk.map_reads },
         }
     }

@@ -20,7 +20,8 @@ impl Accumulate for FirstHit {
     fn cast<L: Lanes>(context: &Context<'_>, token: L::Token, ray: &Ray<L>, _: Gathered<L>) -> Pixels<L> {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
         let isovalue = L::splat(token, context.parameters.isovalue);
-        let mut was_in = isovalue.le(context.value_at_outlined(token, ray.at(L::splat(token, -0.5))));
+        let before = L::select(zero.lt(ray.first_sample), ray.first_sample - 1.0, L::splat(token, -0.5));
+        let mut was_in = isovalue.le(context.value_at_outlined(token, ray.at(before)));
         let mut samples = zero;
         let mut walk = Walk::along(token, ray, context.skip);
         let mut is_found = !walk.is_active & walk.is_active;
@@ -40,6 +41,7 @@ impl Accumulate for FirstHit {
             rgb: Vec3::splat(token, Vec3A::ZERO),
             alpha: zero,
             depth_m: L::splat(token, f32::INFINITY),
+            visible_from_m: L::splat(token, f32::INFINITY),
             taken: Taken { samples, map_reads: walk.map_reads },
         };
         if !is_found.any() {
@@ -50,10 +52,12 @@ impl Accumulate for FirstHit {
         let classified = Isovalue::classify(context, token, position, isovalue, isovalue);
         let lifted = position + lift(context, token, classified.gradient);
         let rgb = shade::<Isovalue, L>(context, token, ray, lifted, &classified);
+        let depth_m = L::select(is_found, ray.depth_m(index), miss.depth_m);
         Pixels {
             rgb: Vec3::select(is_found, rgb, miss.rgb),
             alpha: L::select(is_found, one, zero),
-            depth_m: L::select(is_found, ray.depth_m(index), miss.depth_m),
+            depth_m,
+            visible_from_m: depth_m,
             ..miss
         }
     }

@@ -38,6 +38,7 @@ impl<C: Classify> Accumulate for Oracle<C> {
             rgb: Vec3::splat(token, Vec3A::ZERO),
             alpha: zero,
             depth_m: L::splat(token, f32::INFINITY),
+            visible_from_m: L::splat(token, f32::INFINITY),
             taken: Taken { samples, map_reads: runs },
         }
     }

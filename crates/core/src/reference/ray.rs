@@ -25,6 +25,8 @@ pub(super) struct PixelRay {
     step_length: f64,
     /// Number of samples; 0 if the ray misses.
     pub(super) sample_count: u32,
+    /// The first sample that is taken.
+    first_sample: u32,
     /// Depth of sample 0, metres.
     first_depth_m: f64,
     /// Depth of a step, metres.
@@ -55,12 +57,19 @@ impl PixelRay {
             step: direction * step_depth_m,
             step_length: step_depth_m * metric_direction.length(),
             sample_count,
+            first_sample: 0,
             first_depth_m,
             step_depth_m,
             to_viewpoint: metric_from_texture * (viewpoint - w * origin)
                 - metric_direction * (w * first_depth_m),
             to_viewpoint_step: metric_direction * (-w * step_depth_m),
         }
+    }
+
+    /// Without the samples before a depth, metres; a miss if those are all.
+    pub(super) fn from(self, depth_m: f64) -> Self {
+        let before = ((depth_m - self.first_depth_m) / self.step_depth_m).ceil() as u32;
+        if before < self.sample_count { Self { first_sample: before, ..self } } else { Self::default() }
     }
 
     /// Without the samples behind a depth, metres.
@@ -81,6 +90,8 @@ pub(super) struct Ray<L> {
     pub(super) step_length: L,
     /// Number of samples; 0 if the ray misses.
     pub(super) sample_count: L,
+    /// The first sample that is taken.
+    pub(super) first_sample: L,
     /// Depth of sample 0, metres.
     first_depth_m: L,
     /// Depth of a step, metres.
@@ -105,6 +116,7 @@ impl<L: Lanes> Ray<L> {
             step: vector(|ray| ray.step, dims),
             step_length: number(|ray| ray.step_length),
             sample_count: number(|ray| f64::from(ray.sample_count)),
+            first_sample: number(|ray| f64::from(ray.first_sample)),
             first_depth_m: number(|ray| ray.first_depth_m),
             step_depth_m: number(|ray| ray.step_depth_m),
             to_viewpoint: vector(|ray| ray.to_viewpoint, DVec3::ONE),

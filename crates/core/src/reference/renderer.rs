@@ -16,6 +16,7 @@ use super::ray::{PixelRay, Ray, pixels_of_box};
 use super::value_sum::{Mean, ValueSum, XRay};
 use super::volume::{PaddedVoxels, Sampler};
 use crate::cast::{CastParameters, Classifier};
+use crate::first_hits::{FirstHits, RayStarts};
 use crate::image::Image;
 use crate::scene::Mode;
 use crate::view::{RayField, View};
@@ -105,17 +106,42 @@ impl Caster {
         front: Cast,
     ) -> Cast {
         let context = self.context(parameters, aids);
+        self.cast_frame(&context, Frame { view, starts: None, front }).cast
+    }
+
+    /// The same of one view with nothing in front, whose rays leap to what the last picture saw first, if one is given; and what this
+    /// one saw first. Nothing but the view may have changed since the last picture, and nothing is leapt over if the mode has no first
+    /// hits. What was missed is told in [`first_hits`](crate::first_hits).
+    ///
+    /// # Panics
+    /// As [`Caster::cast`].
+    pub fn cast_leaping(
+        &self,
+        parameters: &CastParameters,
+        aids: &Aids<'_>,
+        view: &View,
+        last: Option<&FirstHits>,
+    ) -> (Cast, FirstHits) {
+        let context = self.context(parameters, aids);
+        let last = last.filter(|_| parameters.has_first_hits());
+        let starts = last.map(|last| last.starts(view, parameters));
+        let frame = Frame { view, starts: starts.as_ref(), front: Cast::nothing(view.size) };
+        let Seen { cast, visible_from_m } = self.cast_frame(&context, frame);
+        (cast, FirstHits::of_pixels(view, parameters, &visible_from_m))
+    }
+
+    fn cast_frame(&self, context: &Context<'_>, frame: Frame<'_>) -> Seen {
         if u32::try_from(self.voxels.len()).is_err() {
-            return cast_view(OneByOne, &context, view, front);
+            return cast_view(OneByOne, context, frame);
         }
         match Level::new() {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx512(simd) => cast_view(Wide(simd), &context, view, front),
+            Level::Avx512(simd) => cast_view(Wide(simd), context, frame),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx2(simd) => cast_view(Wide(simd), &context, view, front),
+            Level::Avx2(simd) => cast_view(Wide(simd), context, frame),
             #[cfg(target_arch = "aarch64")]
-            Level::Neon(simd) => cast_view(Wide(simd), &context, view, front),
-            _ => cast_view(OneByOne, &context, view, front),
+            Level::Neon(simd) => cast_view(Wide(simd), context, frame),
+            _ => cast_view(OneByOne, context, frame),
         }
     }
 
@@ -125,7 +151,7 @@ impl Caster {
     /// As [`Caster::cast`].
     pub fn cast_exactly(&self, parameters: &CastParameters, aids: &Aids<'_>, views: &[View]) -> Vec<Cast> {
         let context = self.context(parameters, aids);
-        views.iter().map(|view| cast_view(OneByOne, &context, view, Cast::nothing(view.size))).collect()
+        views.iter().map(|view| cast_view(OneByOne, &context, Frame::of(view)).cast).collect()
     }
 
     /// What rays must read at the least, whatever the structure: every visible sample, and one read of a map for each run of
@@ -137,14 +163,15 @@ impl Caster {
         view: &View,
     ) -> Cast {
         let context = self.context(parameters, &Aids { gradient_map, leap: Leap::Nothing });
-        let front = Cast::nothing(view.size);
-        match parameters.classifier {
-            Classifier::ValueGradient => cast_bands::<Oracle<ValueGradient>>(OneByOne, &context, view, front),
-            Classifier::PreIntegrated => cast_bands::<Oracle<PreIntegrated>>(OneByOne, &context, view, front),
+        let frame = Frame::of(view);
+        let seen = match parameters.classifier {
+            Classifier::ValueGradient => cast_bands::<Oracle<ValueGradient>>(OneByOne, &context, frame),
+            Classifier::PreIntegrated => cast_bands::<Oracle<PreIntegrated>>(OneByOne, &context, frame),
             Classifier::Value | Classifier::Isovalue => {
-                cast_bands::<Oracle<Value>>(OneByOne, &context, view, front)
+                cast_bands::<Oracle<Value>>(OneByOne, &context, frame)
             }
-        }
+        };
+        seen.cast
     }
 
     pub(super) fn context<'a>(&'a self, parameters: &'a CastParameters, aids: &Aids<'a>) -> Context<'a> {
@@ -155,13 +182,35 @@ impl Caster {
     }
 }
 
+/// A view that is cast.
+struct Frame<'a> {
+    view: &'a View,
+    /// Where rays start, if not at once.
+    starts: Option<&'a RayStarts>,
+    /// What is in front.
+    front: Cast,
+}
+
+impl<'a> Frame<'a> {
+    /// With nothing in front and nothing to leap over.
+    fn of(view: &'a View) -> Self {
+        Self { view, starts: None, front: Cast::nothing(view.size) }
+    }
+}
+
+/// A picture, and at which depth each pixel's ray saw something first, metres; infinite without it.
+struct Seen {
+    cast: Cast,
+    visible_from_m: Vec<f32>,
+}
+
 /// Which lanes rays are cast on.
 trait Path: Copy + Send + Sync {
     /// Rows of pixels whose rays are cast together.
     fn band_rows(self) -> usize;
 
     /// Casts the rays of a band.
-    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>);
+    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &Rays<'_>, band: Band<'_>);
 }
 
 #[derive(Clone, Copy)]
@@ -172,7 +221,7 @@ impl Path for OneByOne {
         Exact::PACKET[1]
     }
 
-    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>) {
+    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &Rays<'_>, band: Band<'_>) {
         cast_packets::<A, Exact>((), context, rays, band);
     }
 }
@@ -185,11 +234,30 @@ impl<S: Simd> Path for Wide<S> {
         f32x16::<S>::PACKET[1]
     }
 
-    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &RayField, band: Band<'_>) {
+    fn cast_band<A: Accumulate>(self, context: &Context<'_>, rays: &Rays<'_>, band: Band<'_>) {
         self.0.vectorize(
             #[inline(always)]
             || cast_packets::<A, f32x16<S>>(self.0, context, rays, band),
         );
+    }
+}
+
+/// The rays of a picture.
+struct Rays<'a> {
+    field: RayField,
+    /// Where they start, if not at once.
+    starts: Option<&'a RayStarts>,
+}
+
+impl Rays<'_> {
+    /// That of a pixel.
+    #[inline(always)]
+    fn of_pixel(&self, parameters: &CastParameters, x: usize, y: usize) -> PixelRay {
+        let ray = PixelRay::new(&self.field, parameters, x as f64 + 0.5, y as f64 + 0.5);
+        match self.starts {
+            Some(starts) => ray.from(starts.of_pixel(x, y)),
+            None => ray,
+        }
     }
 }
 
@@ -201,52 +269,56 @@ struct Band<'a> {
     columns: Range<usize>,
     color: &'a mut [[f32; 4]],
     depth_m: &'a mut [f32],
+    visible_from_m: &'a mut [f32],
     reads: &'a mut [Reads],
 }
 
-fn cast_view(path: impl Path, context: &Context<'_>, view: &View, front: Cast) -> Cast {
+fn cast_view(path: impl Path, context: &Context<'_>, frame: Frame<'_>) -> Seen {
     match (context.parameters.mode, context.parameters.classifier) {
         (Mode::Composite, Classifier::ValueGradient) => {
-            cast_bands::<Composite<ValueGradient>>(path, context, view, front)
+            cast_bands::<Composite<ValueGradient>>(path, context, frame)
         }
         (Mode::Composite, Classifier::PreIntegrated) => {
-            cast_bands::<Composite<PreIntegrated>>(path, context, view, front)
+            cast_bands::<Composite<PreIntegrated>>(path, context, frame)
         }
-        (Mode::Composite, _) => cast_bands::<Composite<Value>>(path, context, view, front),
-        (Mode::Mip, _) => cast_bands::<ExtremeValue<Maximum>>(path, context, view, front),
-        (Mode::MinIp, _) => cast_bands::<ExtremeValue<Minimum>>(path, context, view, front),
-        (Mode::Mean, _) => cast_bands::<ValueSum<Mean>>(path, context, view, front),
-        (Mode::XRay, _) => cast_bands::<ValueSum<XRay>>(path, context, view, front),
-        (Mode::Isosurface { .. }, _) => cast_bands::<FirstHit>(path, context, view, front),
+        (Mode::Composite, _) => cast_bands::<Composite<Value>>(path, context, frame),
+        (Mode::Mip, _) => cast_bands::<ExtremeValue<Maximum>>(path, context, frame),
+        (Mode::MinIp, _) => cast_bands::<ExtremeValue<Minimum>>(path, context, frame),
+        (Mode::Mean, _) => cast_bands::<ValueSum<Mean>>(path, context, frame),
+        (Mode::XRay, _) => cast_bands::<ValueSum<XRay>>(path, context, frame),
+        (Mode::Isosurface { .. }, _) => cast_bands::<FirstHit>(path, context, frame),
     }
 }
 
-fn cast_bands<A: Accumulate>(path: impl Path, context: &Context<'_>, view: &View, front: Cast) -> Cast {
-    let rays = RayField::new(view, context.parameters.texture_from_world);
-    let Cast { mut image, mut reads, .. } = front;
+fn cast_bands<A: Accumulate>(path: impl Path, context: &Context<'_>, frame: Frame<'_>) -> Seen {
+    let Frame { view, starts, front: Cast { mut image, mut reads, .. } } = frame;
+    let field = RayField::new(view, context.parameters.texture_from_world);
+    let mut visible_from_m = vec![f32::INFINITY; reads.len()];
     assert_eq!([image.width, image.height], view.size, "the picture in front has the size of the view");
     let (rows, width) = (path.band_rows(), image.width as usize);
-    let [hit_columns, hit_rows] = pixels_of_box(&rays, context.parameters, view.size);
+    let [hit_columns, hit_rows] = pixels_of_box(&field, context.parameters, view.size);
+    let rays = Rays { field, starts };
     let bands = image
         .color
         .par_chunks_mut(rows * width)
         .zip(image.depth_m.par_chunks_mut(rows * width))
+        .zip(visible_from_m.par_chunks_mut(rows * width))
         .zip(reads.par_chunks_mut(rows * width));
     bands.enumerate().filter(|(i, _)| i * rows < hit_rows.end && (i + 1) * rows > hit_rows.start).for_each(
-        |(i, ((color, depth_m), reads))| {
+        |(i, (((color, depth_m), visible_from_m), reads))| {
             let columns = hit_columns.clone();
-            let band = Band { top: i * rows, width, columns, color, depth_m, reads };
+            let band = Band { top: i * rows, width, columns, color, depth_m, visible_from_m, reads };
             path.cast_band::<A>(context, &rays, band);
         },
     );
-    Cast::new(image, reads)
+    Seen { cast: Cast::new(image, reads), visible_from_m }
 }
 
 #[inline(always)]
 fn cast_packets<A: Accumulate, L: Lanes>(
     token: L::Token,
     context: &Context<'_>,
-    rays: &RayField,
+    rays: &Rays<'_>,
     band: Band<'_>,
 ) {
     let [columns, rows] = L::PACKET;
@@ -257,8 +329,7 @@ fn cast_packets<A: Accumulate, L: Lanes>(
         let mut is_hit = false;
         for row in 0..rows.min(band.color.len() / band.width) {
             for column in 0..columns.min(band.width - left) {
-                let (x, y) = ((left + column) as f64 + 0.5, (band.top + row) as f64 + 0.5);
-                let ray = PixelRay::new(rays, context.parameters, x, y);
+                let ray = rays.of_pixel(context.parameters, left + column, band.top + row);
                 is_hit |= ray.sample_count > 0;
                 let (lane, pixel) = (row * columns + column, row * band.width + left + column);
                 packet[lane] = ray;
@@ -272,11 +343,13 @@ fn cast_packets<A: Accumulate, L: Lanes>(
         let pixels = A::cast::<L>(context, token, &ray, Gathered::of(token, &front));
         let [r, g, b] = [pixels.rgb.x, pixels.rgb.y, pixels.rgb.z].map(L::to_array);
         let (alpha, depth_m) = (pixels.alpha.to_array(), pixels.depth_m.to_array());
+        let visible_from_m = pixels.visible_from_m.to_array();
         let (samples, map_reads) = (pixels.taken.samples.to_array(), pixels.taken.map_reads.to_array());
         for (lane, _) in packet.iter().enumerate().filter(|(_, ray)| ray.sample_count > 0) {
             let pixel = lane / columns * band.width + left + lane % columns;
             band.color[pixel] = [r[lane], g[lane], b[lane], alpha[lane]];
             band.depth_m[pixel] = depth_m[lane];
+            band.visible_from_m[pixel] = visible_from_m[lane];
             band.reads[pixel].samples += samples[lane] as u32;
             band.reads[pixel].map_reads += map_reads[lane] as u32;
         }

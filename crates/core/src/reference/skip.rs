@@ -247,14 +247,14 @@ impl<M: BlockMap, L: Lanes> Walk<M, L> {
         }
     }
 
-    /// Over all samples of rays.
+    /// Over all samples of rays from the first that is taken.
     #[inline(always)]
     pub(super) fn along(token: L::Token, ray: &Ray<L>, skip: Option<SkipSampler<M>>) -> Self {
         let blocks = skip.map(
             #[inline(always)]
             |skip| ray.blocks(token, skip),
         );
-        Self::new(token, L::splat(token, 0.0), ray.sample_count, blocks)
+        Self::new(token, ray.first_sample, ray.sample_count, blocks)
     }
 
     /// Moves rays that have left their block, of those that may leap, to the next sample that may contribute to what they

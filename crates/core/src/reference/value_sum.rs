@@ -84,5 +84,11 @@ pub(super) fn pixels<L: Lanes>(
     taken: Taken<L>,
 ) -> Pixels<L> {
     let one = L::splat(token, 1.0);
-    Pixels { rgb: lut_at(&context.parameters.lut, token, value.min(one)).rgb, alpha: one, depth_m, taken }
+    Pixels {
+        rgb: lut_at(&context.parameters.lut, token, value.min(one)).rgb,
+        alpha: one,
+        depth_m,
+        visible_from_m: L::splat(token, f32::INFINITY),
+        taken,
+    }
 }

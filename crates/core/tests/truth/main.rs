@@ -6,6 +6,7 @@
 mod analytic;
 mod clipping;
 mod detail;
+mod first_hits;
 mod gradients;
 mod lanes;
 mod oracle;

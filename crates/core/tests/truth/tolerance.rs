@@ -76,3 +76,6 @@ pub(crate) const DERIVED_OPACITY_OF_WHOLE_SAMPLES: f64 = 0.04;
 
 /// DSSIM of a sphere with level of detail against means of many rays in each pixel: a voxel of up to √2 pixels at its rim.
 pub(crate) const DETAIL_DSSIM: f64 = 0.015;
+
+/// DSSIM of surfaces with sheets thinner than a voxel, cast over ten frames by leaping to the first hits of the last one.
+pub(crate) const LEAPING_DSSIM: f64 = 1e-3;

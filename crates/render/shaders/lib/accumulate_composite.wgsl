@@ -2,7 +2,7 @@ import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{SEARCHES, blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
 import package::lib::ray_state::{RayState, STRETCH};
-import package::lib::record::{end_layer, record};
+import package::lib::record::{end_recording, record};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::volume::{value_at};
 
@@ -48,6 +48,6 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
         }
         state.samples += i - run.begin;
     }
-    end_layer(state);
+    end_recording(state);
     return state;
 }

@@ -2,6 +2,7 @@ import package::lib::cast_parameters::{parameters};
 import package::lib::classify::{classify};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
 import package::lib::ray_state::{NOTHING_HIT, Pixel, RayState, new_ray_state, pixel_of};
+import package::lib::record::{record_surface};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::shade::{shade};
 import package::lib::volume::{value_at};
@@ -28,7 +29,8 @@ fn is_in(value: f32) -> bool {
 
 // `scalar` holds the value before.
 fn start_ray(ray: Ray) -> RayState {
-    return new_ray_state(value_at(ray_at(ray, -0.5)), NOTHING_HIT);
+    let before = select(f32(ray.first_sample) - 1.0, -0.5, ray.first_sample == 0u);
+    return new_ray_state(value_at(ray_at(ray, before)), NOTHING_HIT);
 }
 
 // First crossing of the isovalue, in either direction, between a sample and the one before it. The block of either may
@@ -77,6 +79,7 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
     let classified = classify(position, parameters.isovalue, parameters.isovalue);
     state.color = shade(ray, position + lift(classified.gradient), classified);
     state.depth_m = ray_depth_m(ray, index);
+    record_surface(state.depth_m);
     return state;
 }
 

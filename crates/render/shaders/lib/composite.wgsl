@@ -15,7 +15,7 @@ fn start_ray(ray: Ray) -> RayState {
     if VALUE_OFFSET == 0.0 {
         return new_ray_state(0.0, NOTHING_HIT);
     }
-    return new_ray_state(value_at(ray_at(ray, VALUE_OFFSET - 1.0)), NOTHING_HIT);
+    return new_ray_state(value_at(ray_at(ray, f32(ray.first_sample) + VALUE_OFFSET - 1.0)), NOTHING_HIT);
 }
 
 // Puts sample i, which may be visible, behind what the ray has gathered.

@@ -16,6 +16,8 @@ struct Ray {
     step_length: f32,
     // Number of samples; 0 if the ray misses.
     sample_count: u32,
+    // The first sample that is taken.
+    first_sample: u32,
     // Depth of sample 0, metres.
     first_depth_m: f32,
     // Depth of a step, metres.

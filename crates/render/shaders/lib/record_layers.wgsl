@@ -25,7 +25,7 @@ struct OpenLayer {
 var<private> layers_pixel: vec2u;
 var<private> open_layer: OpenLayer;
 
-fn begin_layers(pixel: vec2u) {
+fn begin_recording(pixel: vec2u) {
     layers_pixel = pixel;
     open_layer = OpenLayer(vec3f(0.0), 1.0, 0.0, 0.0, 0u, 0u);
 }
@@ -54,6 +54,10 @@ fn record(ray: Ray, i: u32, before: RayState, after: RayState) {
         let passed = u32(dot(select(vec4f(0.0), vec4f(1.0), is_passed), vec4f(1.0)));
         open_layer.next = select(open_layer.index, passed, passed > open_layer.index && passed < parameters.layer_count);
     }
+}
+
+fn end_recording(state: RayState) {
+    end_layer(state);
 }
 
 // Writes the layer that a ray is in, which has gathered what it has in all.

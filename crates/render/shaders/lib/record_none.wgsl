@@ -1,10 +1,12 @@
 import package::lib::ray::{Ray};
 import package::lib::ray_state::{RayState};
 
-// Casts that keep no layers.
+// Casts that keep nothing besides the picture.
 
-fn begin_layers(pixel: vec2u) {}
+fn begin_recording(pixel: vec2u) {}
 
 fn record(ray: Ray, i: u32, before: RayState, after: RayState) {}
 
-fn end_layer(state: RayState) {}
+fn end_recording(state: RayState) {}
+
+fn record_surface(depth_m: f32) {}

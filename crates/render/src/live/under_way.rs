@@ -61,7 +61,7 @@ impl UnderWay {
         let begin = |view: View| {
             let mut target = spares.target(gpu, &prepared, view.size)?;
             let list =
-                prepared.lists_tiles.then(|| renderer.tile_pass.list(&gpu.device, view.size, spares.list()));
+                prepared.listing.map(|_| renderer.tile_pass.list(&gpu.device, view.size, spares.list()));
             let tiles = list.as_ref().map_or(&renderer.unused[1], |list| &list.tiles);
             let group = renderer.target_group(gpu, &target, [&states, tiles]);
             let covered = Squares::covered(&view, &prepared.parameters.occupied_corners_world());
@@ -116,7 +116,8 @@ impl UnderWay {
             let Prepared { frame, volume, .. } = &*self.prepared;
             let picture = Picture {
                 bindings: Bindings { frame, volume, target: &view.group },
-                list: view.list.as_ref().map(|list| (&renderer.tile_pass, list)),
+                list: (view.list.as_ref().zip(self.prepared.listing))
+                    .map(|(list, listing)| (&renderer.tile_pass, list, listing)),
             };
             let counts = piece.squares.counts();
             picture.encode_piece(encoder, &pipeline, piece.first_sample, counts, clock.stamps(timed));

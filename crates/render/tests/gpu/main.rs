@@ -8,6 +8,7 @@ mod bounds;
 mod detail;
 mod device;
 mod errors;
+mod first_hits;
 mod layers;
 mod leap;
 mod live;
