@@ -186,15 +186,13 @@ impl Source<'_> {
     fn light_along(&self, ray: &NovelRay, (near_m, far_m): (f64, f64)) -> Light {
         let mut light = Light { rgb: DVec3::ZERO, transmittance: 1.0, depth_m: f64::INFINITY };
         let Some([first, last]) = self.stretch(ray, near_m..far_m) else { return light };
-        let length_px = first.pixel.distance(last.pixel);
-        let steps = ((length_px / self.settings.step_px).ceil() as u32).clamp(1, self.settings.most_steps);
-        let step_px = length_px / f64::from(steps);
+        let path = Path::new(first.pixel, last.pixel, self.settings);
         let mut here = first;
         let mut column = self.columns.at(here.pixel);
-        for step in 1..=steps {
-            let there = ray.at(between(&first, &last, f64::from(step) / f64::from(steps)));
+        for step in 1..=path.steps {
+            let there = ray.at(between(&first, &last, path.fraction_after(step)));
             let next = self.columns.at(there.pixel);
-            let segment = Segment { ends: [here, there], columns: [&column, &next], step_px };
+            let segment = Segment { ends: [here, there], columns: [&column, &next], step_px: path.stride_px };
             segment.add_to(&mut light, ray.metres_per_depth, &self.columns);
             if light.transmittance <= LEAST_TRANSMITTANCE {
                 break;
@@ -213,6 +211,42 @@ impl Source<'_> {
             clipped = ray.clipped(&clipped, size, &self.tiles.around(first, last)?)?;
         }
         Some([clipped.start, clipped.end].map(|wanted_m| ray.at(wanted_m)))
+    }
+}
+
+/// The way of a ray in the shown picture, cut where it passes the middles of pixels along the axis that it mostly follows: within a
+/// step what is interpolated between pixels is linear, and interpolating once more between a step's ends blurs nothing.
+struct Path {
+    /// Its length along that axis, pixels.
+    length_px: f64,
+    /// Of the first step, to the middle of the next pixel.
+    first_px: f64,
+    /// Of the steps after that.
+    stride_px: f64,
+    steps: u32,
+}
+
+impl Path {
+    fn new(first: DVec2, last: DVec2, settings: &VolumetricSettings) -> Self {
+        let way = last - first;
+        let axis = if way.x.abs() >= way.y.abs() { DVec2::X } else { DVec2::Y };
+        let [from, along] = [first.dot(axis), way.dot(axis)];
+        let past_middle = (from - 0.5).rem_euclid(1.0);
+        let first_px = if along < 0.0 && past_middle > 0.0 { past_middle } else { 1.0 - past_middle };
+        let length_px = along.abs();
+        let most_strides = f64::from(settings.most_steps - 1);
+        let rest_px = (length_px - first_px).max(0.0);
+        let stride_px = settings.step_px.max(rest_px / most_strides.max(1.0));
+        let steps = 1 + ((rest_px / stride_px).ceil() as u32).min(settings.most_steps - 1);
+        Self { length_px, first_px, stride_px, steps }
+    }
+
+    /// How much of the way so many steps are.
+    fn fraction_after(&self, steps: u32) -> f64 {
+        if steps == self.steps {
+            return 1.0;
+        }
+        (self.first_px + f64::from(steps - 1) * self.stride_px) / self.length_px
     }
 }
 

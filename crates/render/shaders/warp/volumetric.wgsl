@@ -30,6 +30,17 @@ struct Place {
     wanted_m: f32,
 }
 
+// The way of a ray in the shown picture, cut where it passes the middles of pixels along the axis that it mostly follows.
+struct Path {
+    // Its length along that axis, pixels.
+    length_px: f32,
+    // Of the first step, to the middle of the next pixel.
+    first_px: f32,
+    // Of the steps after that.
+    stride_px: f32,
+    steps: f32,
+}
+
 // Light of a novel ray, gathered front to back.
 struct Light {
     rgb: vec3f,
@@ -50,22 +61,40 @@ fn light_along(ray: NovelRay) -> Light {
     let stretch_m = stretch_of(ray);
     let first = place_at(ray, stretch_m.x);
     let last = place_at(ray, stretch_m.y);
-    let length_px = distance(first.pixel, last.pixel);
-    let steps = select(0.0, clamp(ceil(length_px / warp.step_px), 1.0, warp.most_steps), stretch_m.x < stretch_m.y);
-    let step_px = length_px / max(steps, 1.0);
+    let path = path_between(first.pixel, last.pixel, stretch_m.x < stretch_m.y);
     let goes_forward = first.shown_m <= last.shown_m;
     var here = first;
     var column = column_along(here, goes_forward);
     var step = 0.0;
-    while step < steps && light.transmittance > LEAST_TRANSMITTANCE {
+    while step < path.steps && light.transmittance > LEAST_TRANSMITTANCE {
         step += 1.0;
-        let there = place_at(ray, between(first, last, step / steps));
+        let there = place_at(ray, between(first, last, fraction_after(path, step)));
         let next = column_along(there, goes_forward);
-        light = through_step(light, here, there, column, next, step_px, ray.metres_per_depth);
+        light = through_step(light, here, there, column, next, path.stride_px, ray.metres_per_depth);
         here = there;
         column = next;
     }
     return light;
+}
+
+fn path_between(first: vec2f, last: vec2f, is_there: bool) -> Path {
+    let way = last - first;
+    let axis = select(vec2f(0.0, 1.0), vec2f(1.0, 0.0), abs(way.x) >= abs(way.y));
+    let along = dot(way, axis);
+    let past_middle = fract(dot(first, axis) - 0.5);
+    let first_px = select(1.0 - past_middle, past_middle, along < 0.0 && past_middle > 0.0);
+    let length_px = abs(along);
+    let most_strides = warp.most_steps - 1.0;
+    let rest_px = max(length_px - first_px, 0.0);
+    let stride_px = max(warp.step_px, rest_px / max(most_strides, 1.0));
+    let steps = 1.0 + min(ceil(rest_px / stride_px), most_strides);
+    return Path(length_px, first_px, stride_px, select(0.0, steps, is_there));
+}
+
+// How much of the way so many steps are.
+fn fraction_after(path: Path, steps: f32) -> f32 {
+    let fraction = (path.first_px + (steps - 1.0) * path.stride_px) / max(path.length_px, TINY);
+    return select(fraction, 1.0, steps == path.steps);
 }
 
 fn column_along(place: Place, goes_forward: bool) -> Column {
