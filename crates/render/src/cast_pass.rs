@@ -489,6 +489,7 @@ mod tests {
             ("lib/shade_shadow", "SHADOW_SAMPLES", SHADOW_SAMPLES as f32),
             ("lib/shade_shadow", "SHADING_STEP", cast::SHADING_STEP),
             ("lib/shade_ambient", "AMBIENT_RADIUS", cast::AMBIENT_RADIUS),
+            ("lib/record_layers", "DIVIDED_PX", wheatstone_core::warp::DIVIDED_PX as f32),
             ("lib/accumulate_composite", "FIRST_HIT_ALPHA", cast::FIRST_HIT_ALPHA),
             (FIRST_HIT, "BISECTIONS", cast::BISECTIONS as f32),
             (FIRST_HIT, "SURFACE_LIFT", cast::SURFACE_LIFT),

@@ -14,7 +14,7 @@ use crate::cast::{CastParameters, Classifier};
 use crate::image::Image;
 use crate::scene::Mode;
 use crate::view::{RayField, View};
-use crate::warp::{EmissionAbsorption, Layer, LayerError, LayerThresholds, Medium};
+use crate::warp::{DIVIDED_PX, EmissionAbsorption, Layer, LayerError, LayerThresholds, Medium};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
@@ -79,6 +79,9 @@ fn cast_rows<C: Classify>(
                     thresholds: thresholds.opacities(),
                     layers: &mut layers[column * layer_count..][..layer_count],
                     metres_per_depth: world_rays.at(x, y).1.length(),
+                    pixel_width_m: |depth_m: f64| {
+                        (world_rays.origin_dx + depth_m * world_rays.direction_dx).length()
+                    },
                     gathered: Gathered::nothing(()),
                     span_m: None,
                 };
@@ -95,7 +98,7 @@ fn cast_rows<C: Classify>(
 fn cast_ray<C: Classify>(
     context: &Context<'_>,
     ray: &Ray<Exact>,
-    mut recorder: Recorder<'_>,
+    mut recorder: Recorder<'_, impl Fn(f64) -> f64>,
 ) -> Pixels<Exact> {
     let least_transmittance = Exact::splat((), 1.0 - context.parameters.termination_alpha);
     let mut gathered = Gathered::nothing(());
@@ -110,20 +113,22 @@ fn cast_ray<C: Classify>(
 }
 
 /// Cuts a ray into layers.
-struct Recorder<'a> {
+struct Recorder<'a, W> {
     /// Of the layers that are not written.
     thresholds: &'a [f32],
     /// Layers that are not written, as many.
     layers: &'a mut [Layer],
     /// Length of the ray per metre of depth.
     metres_per_depth: f64,
+    /// Width of a pixel at a depth, metres.
+    pixel_width_m: W,
     /// What the layer under way has gathered.
     gathered: Gathered<Exact>,
     /// Depths of the layer under way, metres.
     span_m: Option<[f32; 2]>,
 }
 
-impl Recorder<'_> {
+impl<W: Fn(f64) -> f64> Recorder<'_, W> {
     /// Adds a sample behind which rays have an opacity.
     fn add(&mut self, ray: &Ray<Exact>, sample: &Sample<Exact>, opacity: f64) {
         if sample.transmittance >= Exact::from(1.0) {
@@ -139,7 +144,9 @@ impl Recorder<'_> {
         self.span_m = Some([start_m, ends_m]);
         self.gathered.add((), sample.rgb, sample.transmittance);
         let passed = self.thresholds.iter().take_while(|&&y| f64::from(y) <= opacity).count();
-        if passed > 0 && passed < self.layers.len() {
+        let thickness_m = f64::from(ends_m - start_m) * self.metres_per_depth;
+        let is_thick = thickness_m >= DIVIDED_PX * (self.pixel_width_m)(f64::from(ends_m));
+        if is_thick && passed > 0 && passed < self.layers.len() {
             self.end_layer();
             self.skip_layers(passed - 1);
         }

@@ -46,6 +46,13 @@ pub(super) struct Column {
     pub(super) strata: [Stratum; MOST_LAYERS],
 }
 
+impl Column {
+    /// Opacity of all layers together.
+    pub(super) fn alpha(&self) -> f64 {
+        self.strata.iter().map(|stratum| stratum.color.w).sum()
+    }
+}
+
 /// The layers of a picture, ready for being read anywhere.
 pub(super) struct Columns<'a> {
     layers: &'a EmissionAbsorption,

@@ -8,6 +8,12 @@ use thiserror::Error;
 /// Most layers per pixel.
 pub const MOST_LAYERS: usize = 8;
 
+/// Thickness below which thresholds do not divide a layer, widths of a pixel at its end.
+///
+/// Neighbouring pixels take a thin surface's samples apart differently, and layers are warped each for itself; that costs more than
+/// keeping together what parallax hardly moves apart: half a pixel when the eye has moved by a thirtieth of the distance.
+pub const DIVIDED_PX: f64 = 16.0;
+
 /// Most layers of a picture: 6 GiB of them.
 const MOST_LAYERS_OF_PICTURE: u64 = 1 << 28;
 
@@ -110,8 +116,8 @@ impl Layer {
 /// A view in k layers per pixel, front to back, each a [`Medium`] between two depths: what a volumetric warp reads (VR Alg. 7,
 /// after Lochmann et al.).
 ///
-/// A layer begins at the first visible sample behind the one before and ends at its threshold, or, if another is left, before
-/// a gap that is longer than it is: what is empty between layers stays empty.
+/// A layer begins at the first visible sample behind the one before and ends at its threshold, once it is as thick as [`DIVIDED_PX`],
+/// or, if another is left, before a gap that is longer than it is: what is empty between layers stays empty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EmissionAbsorption {
     size: [u32; 2],

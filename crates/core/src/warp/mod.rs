@@ -20,7 +20,9 @@ mod quad;
 mod reach;
 mod volumetric;
 
-pub use emission_absorption::{EmissionAbsorption, Layer, LayerError, LayerThresholds, MOST_LAYERS};
+pub use emission_absorption::{
+    DIVIDED_PX, EmissionAbsorption, Layer, LayerError, LayerThresholds, MOST_LAYERS,
+};
 pub use error::WarpError;
 pub use grid::{GridSettings, MOST_GRID_STEPS, grid};
 pub use medium::Medium;

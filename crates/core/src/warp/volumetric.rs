@@ -2,7 +2,7 @@
 
 use super::column::{Column, Columns, Stratum};
 use super::depth_tiles::DepthTiles;
-use super::medium::opacity;
+use super::medium::{opacity, optical_depth};
 use super::{EmissionAbsorption, PixelMap, WarpError};
 use crate::cast::FIRST_HIT_ALPHA;
 use crate::image::Image;
@@ -271,24 +271,43 @@ struct Sheet {
     ends_m: [f64; 2],
     /// At both ends.
     colors: [DVec4; 2],
-    absorption_per_m: f64,
+    absorptions_per_m: [f64; 2],
+    /// What all layers together let not through.
+    alphas: [f64; 2],
 }
 
 impl Sheet {
-    fn between(ends: [&Stratum; 2]) -> Self {
+    /// Of a layer at two positions, and the opacities of all layers there.
+    fn between(ends: [&Stratum; 2], alphas: [f64; 2]) -> Self {
         Self {
             starts_m: ends.map(|stratum| stratum.start_m),
             ends_m: ends.map(|stratum| stratum.end_m),
             colors: ends.map(|stratum| stratum.color),
-            absorption_per_m: 0.5 * (ends[0].absorption_per_m + ends[1].absorption_per_m),
+            absorptions_per_m: ends.map(|stratum| stratum.absorption_per_m),
+            alphas,
         }
     }
+
+    /// Absorption at a share of the way, 1/m. All layers together are as opaque as the picture is there, interpolated between pixels:
+    /// an opaque surface beside nothing ends halfway, where it would still be nearly opaque if absorptions were interpolated.
+    fn absorption_per_m(&self, share: f64) -> f64 {
+        let optical_depths = self.alphas.map(optical_depth);
+        let thinning =
+            optical_depth(mix(self.alphas, share)) / mix(optical_depths, share).max(f64::MIN_POSITIVE);
+        mix(self.absorptions_per_m, share) * thinning
+    }
+}
+
+/// A value at a share of the way between two.
+fn mix([here, there]: [f64; 2], share: f64) -> f64 {
+    here + share * (there - here)
 }
 
 impl Segment<'_> {
     /// Composites the layers that the step crosses.
     fn add_to(&self, light: &mut Light, metres_per_depth: f64, columns: &Columns<'_>) {
         let layer_count = columns.layer_count();
+        let [alpha, next_alpha] = self.columns.map(Column::alpha);
         let goes_forward = self.ends[0].shown_m <= self.ends[1].shown_m;
         for i in 0..layer_count {
             let i = if goes_forward { i } else { layer_count - 1 - i };
@@ -297,14 +316,12 @@ impl Segment<'_> {
                 continue;
             }
             let (here, there) = (here.or_clear_at(&there), there.or_clear_at(&here));
-            let mut add = |ends: [&Stratum; 2], part| {
-                self.add_sheet(light, metres_per_depth, &Sheet::between(ends), part);
-            };
+            let mut add = |sheet: Sheet, part| self.add_sheet(light, metres_per_depth, &sheet, part);
             if columns.agree(&here, &there, self.step_px) {
-                add([&here, &there], 0.0..1.0);
+                add(Sheet::between([&here, &there], [alpha, next_alpha]), 0.0..1.0);
             } else {
-                add([&here; 2], 0.0..0.5);
-                add([&there; 2], 0.5..1.0);
+                add(Sheet::between([&here; 2], [alpha; 2]), 0.0..0.5);
+                add(Sheet::between([&there; 2], [next_alpha; 2]), 0.5..1.0);
             }
         }
     }
@@ -323,7 +340,8 @@ impl Segment<'_> {
         let step_m = there.wanted_m - here.wanted_m;
         let length = inside.end - inside.start;
         let taken_m = length * step_m;
-        let optical_depth = sheet.absorption_per_m * taken_m * metres_per_depth;
+        let absorption_per_m = sheet.absorption_per_m(inside.start + 0.5 * length);
+        let optical_depth = absorption_per_m * taken_m * metres_per_depth;
         // Where about the middle of what is seen is: halfway through a translucent sheet, at the front of an opaque one.
         let seen_at = inside.start + length / (2.0 + optical_depth);
         let color = sheet.colors[0].lerp(sheet.colors[1], seen_at);

@@ -21,7 +21,7 @@ fn the_same_pose_returns_the_picture() {
         let same = warped(&layers, &front());
         assert!(largest_difference(&same, &cast.image) < 1e-3);
         for (found_m, depth_m) in same.depth_m.iter().zip(&cast.image.depth_m) {
-            assert!(found_m == depth_m || (found_m - depth_m).abs() < 0.08, "{found_m} {depth_m}");
+            assert!(found_m == depth_m || (found_m - depth_m).abs() < 0.12, "{found_m} {depth_m}");
         }
     }
 }

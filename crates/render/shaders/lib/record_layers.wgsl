@@ -2,6 +2,10 @@ import package::lib::cast_parameters::{parameters};
 import package::lib::layer_words::{layer_words};
 import package::lib::ray::{Ray, ray_depth_m};
 import package::lib::ray_state::{RayState};
+import package::lib::view::{view};
+
+// Thickness below which a layer is not divided, widths of a pixel.
+const DIVIDED_PX: f32 = 16.0;
 
 // Cuts rays into layers of emission and absorption (VR Alg. 7): `Recorder` of `core::reference::layers`.
 
@@ -52,7 +56,10 @@ fn record(ray: Ray, i: u32, before: RayState, after: RayState) {
         open_layer.end_m = ray_depth_m(ray, f32(i) + 0.5);
         let is_passed = parameters.layer_thresholds <= vec4f(1.0 - after.transmittance);
         let passed = u32(dot(select(vec4f(0.0), vec4f(1.0), is_passed), vec4f(1.0)));
-        open_layer.next = select(open_layer.index, passed, passed > open_layer.index && passed < parameters.layer_count);
+        let width = length(parameters.metric_from_texture * (view.origin_dx + view.direction_dx * open_layer.end_m));
+        let thickness = (open_layer.end_m - open_layer.start_m) * (ray.step_length / ray.step_depth_m);
+        let is_over = thickness >= DIVIDED_PX * width && passed > open_layer.index && passed < parameters.layer_count;
+        open_layer.next = select(open_layer.index, passed, is_over);
     }
 }
 

@@ -1,4 +1,4 @@
-import package::lib::column::{Column, TINY, agree, column_at, reversed};
+import package::lib::column::{Column, SATURATED_ALPHA, TINY, agree, column_at, reversed};
 import package::lib::cover_picture::{cover_picture};
 import package::lib::depth_range::{NOTHING, joined};
 import package::lib::layered_warp::{range, tiles, warp};
@@ -187,11 +187,12 @@ fn through_step(
     // Of the first sheet: from this column to the next, or of this column alone.
     let to_start_m = select(start_m, next_start_m, is_sheet);
     let to_end_m = select(end_m, next_end_m, is_sheet);
-    let absorption = mix(column.absorption_per_m, 0.5 * (column.absorption_per_m + next.absorption_per_m), share);
     let step_m = (there.wanted_m - here.wanted_m) * metres_per_depth;
     let first_part = part_inside(here, there, start_m, end_m, to_start_m, to_end_m, vec4f(0.0), 0.5 + 0.5 * share);
     let second_part =
         part_inside(here, there, next_start_m, next_end_m, next_start_m, next_end_m, 0.5 + 0.5 * share, vec4f(1.0));
+    let middle = share * min(first_part.begin + 0.5 * first_part.length, vec4f(1.0));
+    let absorption = mix(column.absorption_per_m, next.absorption_per_m, middle) * thinning(column, next, middle);
     let first_depth = absorption * first_part.length * step_m;
     let first = exp(-first_depth);
     let second = exp(-next.absorption_per_m * second_part.length * step_m);
@@ -207,6 +208,15 @@ fn through_step(
     light = add(light, first.y, second.y, vec3f(r.y, g.y, b.y), vec3f(next.r.y, next.g.y, next.b.y) / next_a.y);
     light = add(light, first.z, second.z, vec3f(r.z, g.z, b.z), vec3f(next.r.z, next.g.z, next.b.z) / next_a.z);
     return add(light, first.w, second.w, vec3f(r.w, g.w, b.w), vec3f(next.r.w, next.g.w, next.b.w) / next_a.w);
+}
+
+// What is between two columns is as opaque as the picture is there, interpolated between pixels: an opaque surface beside nothing
+// ends halfway, where it would still be nearly opaque if absorptions were interpolated. What these are to be multiplied by.
+fn thinning(column: Column, next: Column, share: vec4f) -> vec4f {
+    let alphas = min(vec2f(dot(column.a, vec4f(1.0)), dot(next.a, vec4f(1.0))), vec2f(SATURATED_ALPHA));
+    let optical_depths = -log(1.0 - alphas);
+    let interpolated = mix(vec4f(optical_depths.x), vec4f(optical_depths.y), share);
+    return -log(1.0 - mix(vec4f(alphas.x), vec4f(alphas.y), share)) / max(interpolated, vec4f(TINY));
 }
 
 // Adds two stretches of a layer, by what passes them.
