@@ -9,7 +9,7 @@ use wheatstone_core::view::{Projection, View};
 use wheatstone_core::warp::{GridSettings, WarpError};
 use wheatstone_render::Gpu;
 use wheatstone_render::live::Front;
-use wheatstone_render::warp::{Shown, Warps};
+use wheatstone_render::warp::{Canvas, Shown, Warps};
 
 /// Of warped pictures: what a display shows, and what is interpolated fastest.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -28,7 +28,7 @@ pub(crate) struct Eyes {
     warps: Warps,
     /// Made when first asked for.
     novel_views: Option<NovelViews>,
-    pictures: Vec<wgpu::TextureView>,
+    pictures: Vec<Canvas>,
     shown: Option<Wanted>,
 }
 
@@ -114,10 +114,13 @@ impl Eyes {
     ) -> Result<Option<[wgpu::TextureView; 2]>, Failure> {
         if self.shown.as_ref() != Some(&wanted) {
             self.shown = None;
-            self.draw(gpu, front, &wanted)?;
+            if let Err(error) = self.draw(gpu, front, &wanted) {
+                self.pictures.clear();
+                return Err(error);
+            }
             self.shown = Some(wanted);
         }
-        let mut eyes = self.pictures.iter();
+        let mut eyes = self.pictures.iter().map(Canvas::view);
         Ok(eyes.next().map(|left| [left.clone(), eyes.next().unwrap_or(left).clone()]))
     }
 
@@ -137,19 +140,20 @@ impl Eyes {
                     View { size: quality.size(view.size), ..view }
                 }
             };
-            let into = self.picture(gpu, eye, view.size)?;
+            let mut into = self.take_picture(gpu, eye, view.size)?;
             match way {
-                Way::AsItIs | Way::Quad(_) => self.warps.quad(gpu, &mut encoder, &shown, &view, &into),
+                Way::AsItIs | Way::Quad(_) => self.warps.quad(gpu, &mut encoder, &shown, &view, &mut into),
                 Way::Grid(_) => {
-                    self.warps.grid(gpu, &mut encoder, &shown, &view, GridSettings::default(), &into)
+                    self.warps.grid(gpu, &mut encoder, &shown, &view, GridSettings::default(), &mut into)
                 }
                 Way::Volumetric(_) => {
                     let novel_views = self.novel_views(gpu)?;
                     novel_views.follow(gpu, &mut encoder, front, wanted.picture)?;
-                    novel_views.encode(gpu, &mut encoder, (source, &shown), &view, &into)
+                    novel_views.encode(gpu, &mut encoder, (source, &shown), &view, &mut into)
                 }
             }
             .map_err(|error: WarpError| Failure::Internal(error.into()))?;
+            self.pictures.insert(eye, into);
         }
         gpu.queue().submit([encoder.finish()]);
         Ok(gpu.check()?)
@@ -163,19 +167,15 @@ impl Eyes {
     }
 
     /// Room for an eye's picture: that of the last one if it has the size.
-    fn picture(
-        &mut self,
-        gpu: &Gpu,
-        eye: usize,
-        [width, height]: [u32; 2],
-    ) -> Result<wgpu::TextureView, Failure> {
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        if let Some(kept) = self.pictures.get(eye).filter(|kept| kept.texture().size() == size) {
-            return Ok(kept.clone());
+    fn take_picture(&mut self, gpu: &Gpu, eye: usize, size: [u32; 2]) -> Result<Canvas, Failure> {
+        let kept = (eye < self.pictures.len()).then(|| self.pictures.remove(eye));
+        if let Some(kept) = kept.filter(|kept| kept.size() == size) {
+            return Ok(kept);
         }
+        let [width, height] = size;
         let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("eye"),
-            size,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -184,10 +184,7 @@ impl Eyes {
             view_formats: &[],
         });
         gpu.check()?;
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        self.pictures.truncate(eye);
-        self.pictures.push(view.clone());
-        Ok(view)
+        Ok(Canvas::new(texture.create_view(&wgpu::TextureViewDescriptor::default())))
     }
 }
 

@@ -5,7 +5,7 @@ use wheatstone_core::view::View;
 use wheatstone_core::warp::{VolumetricSettings, WarpError};
 use wheatstone_render::Gpu;
 use wheatstone_render::live::Front;
-use wheatstone_render::warp::{DepthPass, LayerDepths, Shown, VolumetricWarps};
+use wheatstone_render::warp::{Canvas, DepthPass, LayerDepths, Shown, VolumetricWarps};
 
 /// Volumetric warps, and what they need of the picture.
 pub(crate) struct NovelViews {
@@ -55,7 +55,7 @@ impl NovelViews {
         encoder: &mut wgpu::CommandEncoder,
         (index, shown): (usize, &Shown<'_>),
         wanted: &View,
-        into: &wgpu::TextureView,
+        into: &mut Canvas,
     ) -> Result<(), WarpError> {
         let depths = self.depths.get(index).ok_or(WarpError::NoLayers)?;
         self.warps.encode(gpu, encoder, shown, depths, wanted, &VolumetricSettings::default(), into)

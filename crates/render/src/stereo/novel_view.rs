@@ -6,7 +6,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::renderer::{Prepared, Renderer};
 use crate::squares::Squares;
 use crate::target::{Target, blank_layers, layer_bytes, layer_texture};
-use crate::warp::{DepthPass, LayerDepths, Shown, VolumetricWarps};
+use crate::warp::{Canvas, DepthPass, LayerDepths, Shown, VolumetricWarps};
 use std::time::Instant;
 use wheatstone_core::warp::{LayerThresholds, VolumetricSettings};
 
@@ -94,11 +94,11 @@ impl Renderer {
         self.cast(gpu, prepared, frame.epipolar.reference(), reference)?;
         let cast = start.elapsed();
         let shown = Shown::new(reference, *frame.epipolar.reference(), prepared);
-        let into = derived.color.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut into = Canvas::new(derived.color.create_view(&wgpu::TextureViewDescriptor::default()));
         let settings = VolumetricSettings::default();
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         pass.depth_pass.encode(gpu, &mut encoder, reference, depths)?;
-        pass.warps.encode(gpu, &mut encoder, &shown, depths, wanted, &settings, &into)?;
+        pass.warps.encode(gpu, &mut encoder, &shown, depths, wanted, &settings, &mut into)?;
         derived.drawn = Squares::of(&shown.covered_by_volume(wanted)?);
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;

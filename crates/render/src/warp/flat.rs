@@ -1,8 +1,8 @@
 //! Quad and grid.
 
-use super::Shown;
 use super::flat_uniform::WarpUniform;
 use super::pass::{TEXTURE, build, draw, layout};
+use super::{Canvas, Shown};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::bind;
 use wgpu::util::DeviceExt as _;
@@ -52,7 +52,7 @@ impl Warps {
         encoder: &mut wgpu::CommandEncoder,
         shown: &Shown<'_>,
         wanted: &View,
-        into: &wgpu::TextureView,
+        into: &mut Canvas,
     ) -> Result<(), WarpError> {
         let map = PixelMap::between(wanted, &shown.view)?;
         let plane = map.plane_before_eye(shown.reach.middle());
@@ -72,7 +72,7 @@ impl Warps {
         shown: &Shown<'_>,
         wanted: &View,
         settings: GridSettings,
-        into: &wgpu::TextureView,
+        into: &mut Canvas,
     ) -> Result<(), WarpError> {
         settings.check()?;
         let covered = shown.covered(wanted, 0.0..shown.reach.nearest)?;

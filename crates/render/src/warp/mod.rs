@@ -4,6 +4,7 @@
 //! the shown one can cover; nothing waits for the device. They write to textures of a format that is chosen once: what a display
 //! takes, or half floats.
 
+mod canvas;
 mod depths;
 mod flat;
 mod flat_uniform;
@@ -14,6 +15,7 @@ mod shown;
 mod volumetric;
 mod volumetric_uniform;
 
+pub use canvas::Canvas;
 #[cfg(test)]
 pub(crate) use depths::kernel_files;
 pub use depths::{DepthPass, LayerDepths};

@@ -1,5 +1,6 @@
 //! Render passes of warps: a triangle over the picture, and what each of its pixels shows.
 
+use super::Canvas;
 use crate::gpu::GpuError;
 use crate::groups::uniform;
 use crate::shader::compose;
@@ -75,31 +76,27 @@ pub(super) fn build(
     }))
 }
 
-/// Encodes a pass over some pixels; the others become transparent.
+/// Encodes a pass over some pixels; the others are transparent after it. Its kernel must show nothing elsewhere.
 pub(super) fn draw(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
     group: &wgpu::BindGroup,
     covered: &PixelRect,
-    into: &wgpu::TextureView,
+    into: &mut Canvas,
     wanted: &View,
 ) -> Result<(), WarpError> {
-    let size = into.texture().size();
-    WarpError::unless_of_size([size.width, size.height], wanted)?;
+    WarpError::unless_of_size(into.size(), wanted)?;
+    let (PixelRect { columns, rows }, load) = into.draw(covered);
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("warp"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: into,
+            view: into.view(),
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store: wgpu::StoreOp::Store,
-            },
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         })],
         ..Default::default()
     });
-    let PixelRect { columns, rows } = covered;
     if !columns.is_empty() && !rows.is_empty() {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, group, &[]);

@@ -1,5 +1,6 @@
 //! A texture that warps are drawn to.
 
+use super::Canvas;
 use crate::gpu::{Gpu, GpuError};
 use crate::readback::read_texture;
 use crate::target::check_size;
@@ -10,7 +11,7 @@ use wheatstone_core::image::Image;
 #[derive(Debug)]
 pub struct Picture {
     texture: wgpu::Texture,
-    view: wgpu::TextureView,
+    canvas: Canvas,
 }
 
 impl Picture {
@@ -36,13 +37,13 @@ impl Picture {
             view_formats: &[],
         });
         gpu.check()?;
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { texture, view })
+        let canvas = Canvas::new(texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        Ok(Self { texture, canvas })
     }
 
-    /// What passes render to and sample.
-    pub fn view(&self) -> &wgpu::TextureView {
-        &self.view
+    /// What warps are drawn to.
+    pub fn canvas(&mut self) -> &mut Canvas {
+        &mut self.canvas
     }
 
     /// Waits for the device and reads the picture back; its depths are infinite.

@@ -1,5 +1,6 @@
 //! Novel views of layers of emission and absorption.
 
+use super::Canvas;
 use super::Shown;
 use super::depths::{LayerDepths, array_view};
 use super::pass::{TEXTURE, build, draw, layout};
@@ -54,7 +55,7 @@ impl VolumetricWarps {
         depths: &LayerDepths,
         wanted: &View,
         settings: &VolumetricSettings,
-        into: &wgpu::TextureView,
+        into: &mut Canvas,
     ) -> Result<(), WarpError> {
         settings.check()?;
         let layers = shown.target.layers.as_ref().ok_or(WarpError::NoLayers)?;

@@ -10,7 +10,7 @@ use wheatstone_core::scene::Settings;
 use wheatstone_core::view::{Frustum, Projection, View};
 use wheatstone_core::volume::VoxelType;
 use wheatstone_core::warp::{self, GridSettings, Reach, WarpError};
-use wheatstone_render::warp::{Picture, Shown, Warps};
+use wheatstone_render::warp::{Canvas, Picture, Shown, Warps};
 use wheatstone_render::{Gpu, GpuVolume, Prepared, Renderer, Sources, Target};
 
 /// Divisible by nothing that passes are made of.
@@ -70,11 +70,11 @@ pub(crate) fn wanted(random: &mut fastrand::Rng, view: &View) -> View {
 pub(crate) fn warped(
     gpu: &Gpu,
     wanted: &View,
-    encode: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::TextureView) -> Result<(), WarpError>,
+    encode: impl FnOnce(&mut wgpu::CommandEncoder, &mut Canvas) -> Result<(), WarpError>,
 ) -> Result<Image, WarpError> {
-    let picture = Picture::new(gpu, wanted.size).unwrap();
+    let mut picture = Picture::new(gpu, wanted.size).unwrap();
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encode(&mut encoder, picture.view())?;
+    encode(&mut encoder, picture.canvas())?;
     gpu.queue().submit([encoder.finish()]);
     Ok(picture.read(gpu).unwrap())
 }
@@ -136,6 +136,26 @@ fn grids_are_those_of_the_twin() {
             let (largest, others) = differences(&found, &twin);
             eprintln!("grid {case}: {others:.5} of the pixels, {largest}");
             assert!(others < 0.002 && dssim(&found, &twin) < 1e-4, "{case}: {others} {largest}");
+        }
+    });
+}
+
+#[test]
+fn nothing_of_the_last_warp_is_left() {
+    on_device(|gpu, renderer| {
+        let scene = Scene::cast(gpu, renderer, front());
+        let warps = warps(gpu);
+        let mut random = fastrand::Rng::with_seed(6);
+        let mut picture = Picture::new(gpu, SIZE).unwrap();
+        for case in 0..8 {
+            let wanted =
+                View { size: SIZE, projection: front().projection, ..wanted(&mut random, &scene.view) };
+            let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            warps.quad(gpu, &mut encoder, &scene.shown(), &wanted, picture.canvas()).unwrap();
+            gpu.queue().submit([encoder.finish()]);
+            let alone = quad(gpu, &scene, &wanted).unwrap();
+            assert!(alone.color.iter().any(|color| color[3] == 0.0), "{case}: nothing would be left");
+            assert!(picture.read(gpu).unwrap().color == alone.color, "{case}");
         }
     });
 }

@@ -86,29 +86,29 @@ impl GpuEngine {
     }
 
     /// The picture on a plane.
-    pub(crate) fn quad(&self, warping: &GpuWarping, wanted: &View) -> Result<Duration, Failure> {
-        let GpuWarping { warps, warped, .. } = warping;
-        let shown = self.shown(warping);
-        self.timed(|encoder| warps.quad(&self.gpu, encoder, &shown, wanted, warped.view()))
+    pub(crate) fn quad(&self, warping: &mut GpuWarping, wanted: &View) -> Result<Duration, Failure> {
+        let GpuWarping { warps, shot, target, view, warped, .. } = warping;
+        let shown = self.shown(*shot, target, *view);
+        self.timed(|encoder| warps.quad(&self.gpu, encoder, &shown, wanted, warped.canvas()))
     }
 
     /// The picture as a surface of its first hits.
-    pub(crate) fn grid(&self, warping: &GpuWarping, wanted: &View) -> Result<Duration, Failure> {
-        let GpuWarping { warps, warped, .. } = warping;
-        let shown = self.shown(warping);
+    pub(crate) fn grid(&self, warping: &mut GpuWarping, wanted: &View) -> Result<Duration, Failure> {
+        let GpuWarping { warps, shot, target, view, warped, .. } = warping;
+        let shown = self.shown(*shot, target, *view);
         let settings = GridSettings::default();
-        self.timed(|encoder| warps.grid(&self.gpu, encoder, &shown, wanted, settings, warped.view()))
+        self.timed(|encoder| warps.grid(&self.gpu, encoder, &shown, wanted, settings, warped.canvas()))
     }
 
     /// The picture cast anew through its layers.
-    pub(crate) fn volumetric(&self, warping: &GpuWarping, wanted: &View) -> Result<Duration, Failure> {
-        let GpuWarping { layered, warped, .. } = warping;
+    pub(crate) fn volumetric(&self, warping: &mut GpuWarping, wanted: &View) -> Result<Duration, Failure> {
+        let GpuWarping { layered, shot, target, view, warped, .. } = warping;
         let Some(Layered { warps, depths, settings, .. }) = layered else {
             return Err(Failure::input(WarpError::NoLayers));
         };
-        let shown = self.shown(warping);
+        let shown = self.shown(*shot, target, *view);
         self.timed(|encoder| {
-            warps.encode(&self.gpu, encoder, &shown, depths, wanted, settings, warped.view())
+            warps.encode(&self.gpu, encoder, &shown, depths, wanted, settings, warped.canvas())
         })
     }
 
@@ -117,8 +117,8 @@ impl GpuEngine {
         Ok(warping.warped.read(&self.gpu)?)
     }
 
-    fn shown<'a>(&self, warping: &'a GpuWarping) -> Shown<'a> {
-        Shown::new(&warping.target, warping.view, &self.scenes[warping.shot.0].prepared)
+    fn shown<'a>(&self, shot: Shot, target: &'a Target, view: View) -> Shown<'a> {
+        Shown::new(target, view, &self.scenes[shot.0].prepared)
     }
 
     /// Encodes, submits and waits.

@@ -82,14 +82,14 @@ impl Screen {
     }
 
     /// Shows the front picture as a view wants it, and waits until that is done.
-    fn show(&self, gpu: &Gpu, live: &LiveView, wanted: &View) -> Result<(), Failure> {
+    fn show(&mut self, gpu: &Gpu, live: &LiveView, wanted: &View) -> Result<(), Failure> {
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if let Some(front) = live.front()
             && let Some((target, view)) = front.pictures().next()
         {
             let shown = Shown::new(target, view, front.prepared());
             self.warps
-                .quad(gpu, &mut encoder, &shown, wanted, self.picture.view())
+                .quad(gpu, &mut encoder, &shown, wanted, self.picture.canvas())
                 .map_err(Failure::input)?;
         }
         gpu.queue().submit([encoder.finish()]);
@@ -107,7 +107,7 @@ pub(super) fn fitting_pace(
     least_reserve_s: f64,
 ) -> Result<Pace, Failure> {
     let mut live = engine.view(motion.eyes_at(0.0).view(like))?;
-    let screen = Screen::new(engine.gpu, like.size)?;
+    let mut screen = Screen::new(engine.gpu, like.size)?;
     let (mut render_s, mut reserve_s) = (0.0, least_reserve_s);
     for probe in 0..PROBES {
         let time_s = motion.duration_s() * f64::from(probe) / f64::from(PROBES);
@@ -153,7 +153,7 @@ pub(super) fn refreshes(
     let ahead_s = (pace.render_s / pace.available_s()).ceil() * period_s;
     let mut live = engine.view(motion.eyes_at(0.0).view(like))?;
     complete(engine, &mut live)?;
-    let screen = Screen::new(engine.gpu, like.size)?;
+    let mut screen = Screen::new(engine.gpu, like.size)?;
     screen.show(engine.gpu, &live, like)?;
     let latest_s = f64::NEG_INFINITY;
     let mut keeping = Keeping { case, pace: *pace, refreshes: 0, missed: 0, latest_s, cast_s: 0.0 };

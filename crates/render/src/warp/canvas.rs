@@ -1,0 +1,39 @@
+//! What warps are drawn to.
+
+use wheatstone_core::view::PixelRect;
+
+/// A texture that warps are drawn to, which knows where the last one drew: the next empties no more than that.
+///
+/// What is encoded has to be submitted, in that order, and nothing else may draw there.
+#[derive(Debug)]
+pub struct Canvas {
+    view: wgpu::TextureView,
+    /// Pixels outside of which it is transparent; unknown before the first warp.
+    drawn: Option<PixelRect>,
+}
+
+impl Canvas {
+    /// A texture with anything in it.
+    pub fn new(view: wgpu::TextureView) -> Self {
+        Self { view, drawn: None }
+    }
+
+    /// What passes sample.
+    pub fn view(&self) -> &wgpu::TextureView {
+        &self.view
+    }
+
+    /// Width and height, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        let size = self.view.texture().size();
+        [size.width, size.height]
+    }
+
+    /// Notes that some pixels are drawn, and returns which have to be for the others to be transparent, and how the pass begins.
+    pub(super) fn draw(&mut self, covered: &PixelRect) -> (PixelRect, wgpu::LoadOp<wgpu::Color>) {
+        match self.drawn.replace(covered.clone()) {
+            Some(before) => (before.joined(covered), wgpu::LoadOp::Load),
+            None => (covered.clone(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)),
+        }
+    }
+}
