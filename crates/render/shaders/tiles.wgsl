@@ -23,7 +23,9 @@ fn list_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id)
     }
     // Samples from `sample_limit` on are not looked at: they count as something.
     let end = min(ray.sample_count, view.sample_limit);
-    let run = next_run(start_walk(ray.first, ray.step), start_of(ray, pixel), end, 0.0);
+    // A surface may be behind the sample before the first: that one's block counts, too.
+    let first = max(start_of(ray, pixel), 1u) - 1u;
+    let run = next_run(start_walk(ray.first, ray.step), first, end, 0.0);
     if run.begin >= run.end && end == ray.sample_count {
         store_blank(pixel, run.map_reads);
         return;

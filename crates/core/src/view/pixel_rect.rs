@@ -27,16 +27,6 @@ impl PixelRect {
         self.columns.is_empty() || self.rows.is_empty()
     }
 
-    /// The smallest rectangle that holds both.
-    #[must_use]
-    pub fn joined(&self, other: &Self) -> Self {
-        if self.is_empty() || other.is_empty() {
-            return if self.is_empty() { other.clone() } else { self.clone() };
-        }
-        let around = |a: &Range<u32>, b: &Range<u32>| a.start.min(b.start)..a.end.max(b.end);
-        Self { columns: around(&self.columns, &other.columns), rows: around(&self.rows, &other.rows) }
-    }
-
     /// The pixels, of a picture of a size, about the convex hull of positions, in pixels from the top left; all of them if one
     /// is nowhere.
     pub(crate) fn of_positions(positions: impl Iterator<Item = Option<DVec2>>, size: [u32; 2]) -> Self {

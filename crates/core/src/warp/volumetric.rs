@@ -214,7 +214,8 @@ impl Source<'_> {
     }
 }
 
-/// The way of a ray in the shown picture, cut where it passes the middles of pixels along the axis that it mostly follows: within a
+/// The way of a ray in the shown picture, cut, if there are steps enough, where it passes the middles of pixels along the axis that it
+/// mostly follows: within a
 /// step what is interpolated between pixels is linear, and interpolating once more between a step's ends blurs nothing.
 struct Path {
     /// Its length along that axis, pixels.

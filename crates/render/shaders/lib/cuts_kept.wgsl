@@ -69,7 +69,7 @@ fn note_cut(row: u32, strip: u32, column: i32, ray: Ray, ended: SegmentedRay) {
             let begin = max(start_of_slab(ray, min(slab + 1, view.pair.nearest)), ended.next);
             let end = end_of_slab(ray, max(slab, view.pair.furthest));
             let run = next_run(walk, begin, end, 0.0);
-            leaps += run.map_reads;
+            leaps += run.map_reads + 1u;
             cut |= select(0u, bit_of(from_first), run.begin < run.end);
             open &= open - 1u;
         }

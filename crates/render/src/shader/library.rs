@@ -132,6 +132,7 @@ files! {
     "stereo/sink_strips",
     "stereo/sink_tiles",
     "tiles",
+    "warp/blank",
     "warp/depth_range",
     "warp/depth_tiles",
     "warp/grid",

@@ -29,11 +29,8 @@ impl Canvas {
         [size.width, size.height]
     }
 
-    /// Notes that some pixels are drawn, and returns which have to be for the others to be transparent, and how the pass begins.
-    pub(super) fn draw(&mut self, covered: &PixelRect) -> (PixelRect, wgpu::LoadOp<wgpu::Color>) {
-        match self.drawn.replace(covered.clone()) {
-            Some(before) => (before.joined(covered), wgpu::LoadOp::Load),
-            None => (covered.clone(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)),
-        }
+    /// Notes that some pixels are drawn. Returns which have to be emptied before; all, if it is unknown.
+    pub(super) fn draw(&mut self, covered: &PixelRect) -> Option<PixelRect> {
+        self.drawn.replace(covered.clone())
     }
 }

@@ -1,7 +1,7 @@
 //! Quad and grid.
 
 use super::flat_uniform::WarpUniform;
-use super::pass::{TEXTURE, build, draw, layout};
+use super::pass::{Drawing, TEXTURE, build, layout};
 use super::{Canvas, Shown};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::bind;
@@ -14,8 +14,8 @@ use wheatstone_core::warp::{GridSettings, PixelMap, WarpError};
 pub struct Warps {
     format: wgpu::TextureFormat,
     layout: wgpu::BindGroupLayout,
-    quad: wgpu::RenderPipeline,
-    grid: wgpu::RenderPipeline,
+    quad: Drawing,
+    grid: Drawing,
 }
 
 impl Warps {
@@ -58,7 +58,7 @@ impl Warps {
         let plane = map.plane_before_eye(shown.reach.middle());
         let covered = shown.covered(wanted, plane..plane)?;
         let group = self.bind(gpu, &map.onto_plane(plane), shown, wanted, GridSettings::default());
-        draw(encoder, &self.quad, &group, &covered, into, wanted)
+        self.quad.encode(encoder, &group, &covered, into, wanted)
     }
 
     /// Encodes `wheatstone_core::warp::grid` into a picture of the wanted view's size and the format.
@@ -78,7 +78,7 @@ impl Warps {
         let covered = shown.covered(wanted, 0.0..shown.reach.nearest)?;
         let map = PixelMap::between(wanted, &shown.view)?;
         let group = self.bind(gpu, &map, shown, wanted, settings);
-        draw(encoder, &self.grid, &group, &covered, into, wanted)
+        self.grid.encode(encoder, &group, &covered, into, wanted)
     }
 
     fn bind(

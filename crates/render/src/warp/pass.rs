@@ -33,11 +33,22 @@ pub(super) fn layout<Uniform>(
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("warp"), entries: &entries })
 }
 
-/// Builds the pipeline of a file; what the driver says against it comes with the next [`Gpu::check`](crate::Gpu::check).
+/// Builds the pipelines of a warp; what the driver says against them comes with the next [`Gpu::check`](crate::Gpu::check).
 ///
 /// # Errors
 /// [`GpuError::Refused`] for a file that makes no module.
 pub(super) fn build(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    warp: (&'static str, &'static str),
+    format: wgpu::TextureFormat,
+) -> Result<Drawing, GpuError> {
+    let pipeline = |file| build_pipeline(device, layout, file, format);
+    Ok(Drawing { warp: pipeline(warp)?, blank: pipeline(("warp/blank", "warp_blank"))? })
+}
+
+/// Builds the pipeline of a file.
+fn build_pipeline(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     (root, entry_point): (&'static str, &'static str),
@@ -76,32 +87,47 @@ pub(super) fn build(
     }))
 }
 
-/// Encodes a pass over some pixels; the others are transparent after it. Its kernel must show nothing elsewhere.
-pub(super) fn draw(
-    encoder: &mut wgpu::CommandEncoder,
-    pipeline: &wgpu::RenderPipeline,
-    group: &wgpu::BindGroup,
-    covered: &PixelRect,
-    into: &mut Canvas,
-    wanted: &View,
-) -> Result<(), WarpError> {
-    WarpError::unless_of_size(into.size(), wanted)?;
-    let (PixelRect { columns, rows }, load) = into.draw(covered);
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("warp"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: into.view(),
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        })],
-        ..Default::default()
-    });
-    if !columns.is_empty() && !rows.is_empty() {
-        pass.set_pipeline(pipeline);
+/// A warp's pipeline, and one that empties pixels.
+#[derive(Debug)]
+pub(super) struct Drawing {
+    pub(super) warp: wgpu::RenderPipeline,
+    pub(super) blank: wgpu::RenderPipeline,
+}
+
+impl Drawing {
+    /// Encodes a pass over some pixels; the others are transparent after it.
+    pub(super) fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        group: &wgpu::BindGroup,
+        covered: &PixelRect,
+        into: &mut Canvas,
+        wanted: &View,
+    ) -> Result<(), WarpError> {
+        WarpError::unless_of_size(into.size(), wanted)?;
+        let before = into.draw(covered);
+        let load = match before {
+            Some(_) => wgpu::LoadOp::Load,
+            None => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("warp"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: into.view(),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
         pass.set_bind_group(0, group, &[]);
-        pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
-        pass.draw(0..3, 0..1);
+        let blanked = before.iter().map(|before| (&self.blank, before));
+        for (pipeline, rect) in blanked.chain([(&self.warp, covered)]).filter(|(_, rect)| !rect.is_empty()) {
+            let PixelRect { columns, rows } = rect;
+            pass.set_pipeline(pipeline);
+            pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
+            pass.draw(0..3, 0..1);
+        }
+        Ok(())
     }
-    Ok(())
 }

@@ -3,7 +3,7 @@
 use super::Canvas;
 use super::Shown;
 use super::depths::{LayerDepths, array_view};
-use super::pass::{TEXTURE, build, draw, layout};
+use super::pass::{Drawing, TEXTURE, build, layout};
 use super::volumetric_uniform::LayeredWarpUniform;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::bind;
@@ -21,7 +21,7 @@ const LAYERS: wgpu::BindingType = wgpu::BindingType::Texture {
 #[derive(Debug)]
 pub struct VolumetricWarps {
     layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::RenderPipeline,
+    drawing: Drawing,
 }
 
 impl VolumetricWarps {
@@ -37,8 +37,8 @@ impl VolumetricWarps {
 
     fn build(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let layout = layout::<LayeredWarpUniform>(device, &[LAYERS, TEXTURE, TEXTURE]);
-        let pipeline = build(device, &layout, ("warp/volumetric", "warp_volumetric"), format)?;
-        Ok(Self { layout, pipeline })
+        let drawing = build(device, &layout, ("warp/volumetric", "warp_volumetric"), format)?;
+        Ok(Self { layout, drawing })
     }
 
     /// Encodes `wheatstone_core::warp::volumetric` of a picture whose layers have these depths, into a picture of the wanted
@@ -76,7 +76,7 @@ impl VolumetricWarps {
             wgpu::BindingResource::TextureView(&all),
         ];
         let group = bind(&gpu.device, &self.layout, &resources);
-        draw(encoder, &self.pipeline, &group, &covered, into, wanted)
+        self.drawing.encode(encoder, &group, &covered, into, wanted)
     }
 }
 
