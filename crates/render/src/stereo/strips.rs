@@ -274,7 +274,7 @@ fn iteration_limit(frame: &PairFrame<'_>) -> Result<u32, PairError> {
     let samples = frame.parameters().most_samples_per_ray();
     let of_stretch = STRETCH * (MOST_ITERATIONS_PER_SAMPLE + frame.prepared.iterations_of_shading);
     let reach = STRIP_COLUMNS.saturating_add(frame.slabs.layers());
-    let of_rays_in_turn = LOCKSTEP_RAYS.saturating_mul(samples.saturating_add(reach).saturating_mul(2));
+    let of_rays_in_turn = LOCKSTEP_RAYS.saturating_mul(samples.saturating_add(reach));
     let besides = of_rays_in_turn.saturating_add(of_stretch).saturating_add(reach.saturating_mul(2));
     let limit = ITERATION_LIMIT.saturating_sub(besides);
     if limit == 0 { Err(PairError::LongRays { samples }) } else { Ok(limit) }
