@@ -10,6 +10,7 @@ pub mod detail;
 pub mod first_hits;
 pub mod gradient_map;
 pub mod head;
+pub mod headset;
 pub mod image;
 pub mod metrics;
 pub mod phantom;

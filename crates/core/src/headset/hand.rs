@@ -1,0 +1,39 @@
+//! A hand and what it does with its controller, or bare.
+
+use crate::head::Pose;
+
+/// Which hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
+}
+
+impl Side {
+    /// Both, in the order of arrays of two hands.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+
+    /// Its place in arrays of two hands.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// What a hand does. A hand that is not tracked has no poses, and nothing pressed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hand {
+    /// Of what is held in the fist, world space; −Z points away from the body along the thumb.
+    pub grip: Option<Pose>,
+    /// Of the ray that points, along its −Z, world space.
+    pub aim: Option<Pose>,
+    /// How far the grip is squeezed (or thumb and index finger of a bare hand are pinched together), 0 to 1.
+    pub squeeze: f32,
+    /// How far the trigger is pulled, 0 to 1.
+    pub trigger: f32,
+    /// The thumb-stick: right and up, −1 to 1.
+    pub stick: [f32; 2],
+    /// Whether the menu button is down.
+    pub menu: bool,
+}
