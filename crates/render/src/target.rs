@@ -123,10 +123,11 @@ impl Target {
 
     /// Encodes a copy of what has been drawn to another target of the same size.
     pub(crate) fn copy_drawn(&self, encoder: &mut wgpu::CommandEncoder, to: &Self) {
-        let PixelRect { columns, rows } = self.drawn_pixels();
-        if columns.is_empty() || rows.is_empty() {
+        let drawn = self.drawn_pixels();
+        if drawn.is_empty() {
             return;
         }
+        let PixelRect { columns, rows } = drawn;
         let origin = wgpu::Origin3d { x: columns.start, y: rows.start, z: 0 };
         for (from, to) in [(&self.color, &to.color), (&self.depth, &to.depth)] {
             encoder.copy_texture_to_texture(

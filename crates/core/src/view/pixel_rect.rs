@@ -27,6 +27,20 @@ impl PixelRect {
         self.columns.is_empty() || self.rows.is_empty()
     }
 
+    /// Its pixels that are not in another: above it, below it, to its left and to its right.
+    pub fn without(&self, other: &Self) -> [Self; 4] {
+        if other.is_empty() {
+            let nothing = Self { columns: 0..0, rows: 0..0 };
+            return [self.clone(), nothing.clone(), nothing.clone(), nothing];
+        }
+        let [left, right] = split(&self.columns, &other.columns);
+        let [above, below] = split(&self.rows, &other.rows);
+        let beside = above.end..below.start;
+        let wide = |rows| Self { columns: self.columns.clone(), rows };
+        let narrow = |columns| Self { columns, rows: beside.clone() };
+        [wide(above), wide(below), narrow(left), narrow(right)]
+    }
+
     /// The pixels, of a picture of a size, about the convex hull of positions, in pixels from the top left; all of them if one
     /// is nowhere.
     pub(crate) fn of_positions(positions: impl Iterator<Item = Option<DVec2>>, size: [u32; 2]) -> Self {
@@ -41,6 +55,12 @@ impl PixelRect {
         };
         Self { columns: range(|at| at.x, width), rows: range(|at| at.y, height) }
     }
+}
+
+/// What is before and what is after a part of a range, of which neither overlaps it.
+fn split(all: &Range<u32>, part: &Range<u32>) -> [Range<u32>; 2] {
+    let start = part.start.clamp(all.start, all.end);
+    [all.start..start, part.end.clamp(start, all.end)..all.end]
 }
 
 /// The whole pixels that positions along an axis span, with the margin; some may be beyond the picture's edges.
@@ -84,6 +104,7 @@ mod tests {
     use super::*;
     use crate::view::{Frustum, Orbit, OrthographicBox, RayField};
     use glam::DAffine3;
+    use proptest::prelude::*;
 
     const SIZE: [u32; 2] = [90, 60];
 
@@ -127,6 +148,23 @@ mod tests {
                 }
             }
             assert!(hit > 0 && rect.columns.len() * rect.rows.len() < 2 * hit, "{hit} {rect:?}");
+        }
+    }
+
+    fn rects() -> impl Strategy<Value = PixelRect> {
+        let range = || (0..9_u32, 0..7_u32).prop_map(|(start, length)| start..start + length);
+        (range(), range()).prop_map(|(columns, rows)| PixelRect { columns, rows })
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_left_of_a_rectangle_has_each_of_its_other_pixels_once(rect in rects(), other in rects()) {
+            let left = rect.without(&other);
+            for (x, y) in (0..16).flat_map(|y| (0..16).map(move |x| (x, y))) {
+                let has = |of: &PixelRect| of.columns.contains(&x) && of.rows.contains(&y);
+                let times = left.iter().filter(|part| has(part)).count();
+                prop_assert_eq!(times, usize::from(has(&rect) && !has(&other)), "{} {}", x, y);
+            }
         }
     }
 

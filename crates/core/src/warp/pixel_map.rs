@@ -79,7 +79,7 @@ impl PixelMap {
 
     /// The pixels of the other view, of a size, that what is in some pixels and between two inverse depths can land in.
     pub fn covered(&self, pixels: &PixelRect, inverse_depths: Range<f64>, size: [u32; 2]) -> PixelRect {
-        if pixels.columns.is_empty() || pixels.rows.is_empty() {
+        if pixels.is_empty() {
             return PixelRect { columns: 0..0, rows: 0..0 };
         }
         // A pixel more on each side, into which interpolation fades.

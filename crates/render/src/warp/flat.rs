@@ -1,7 +1,7 @@
 //! Quad and grid.
 
 use super::flat_uniform::WarpUniform;
-use super::pass::{Drawing, TEXTURE, build, layout};
+use super::pass::{BLANK, TEXTURE, build, draw, layout};
 use super::{Canvas, Shown};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::bind;
@@ -14,8 +14,9 @@ use wheatstone_core::warp::{GridSettings, PixelMap, WarpError};
 pub struct Warps {
     format: wgpu::TextureFormat,
     layout: wgpu::BindGroupLayout,
-    quad: Drawing,
-    grid: Drawing,
+    blank: wgpu::RenderPipeline,
+    quad: wgpu::RenderPipeline,
+    grid: wgpu::RenderPipeline,
 }
 
 impl Warps {
@@ -31,9 +32,9 @@ impl Warps {
 
     fn build(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let layout = layout::<WarpUniform>(device, &[TEXTURE; 2]);
-        let quad = build(device, &layout, ("warp/quad", "warp_quad"), format)?;
-        let grid = build(device, &layout, ("warp/grid", "warp_grid"), format)?;
-        Ok(Self { format, layout, quad, grid })
+        let [blank, quad, grid] = [BLANK, ("warp/quad", "warp_quad"), ("warp/grid", "warp_grid")]
+            .map(|file| build(device, &layout, file, format));
+        Ok(Self { format, layout, blank: blank?, quad: quad?, grid: grid? })
     }
 
     /// The format of the pictures.
@@ -58,7 +59,7 @@ impl Warps {
         let plane = map.plane_before_eye(shown.reach.middle());
         let covered = shown.covered(wanted, plane..plane)?;
         let group = self.bind(gpu, &map.onto_plane(plane), shown, wanted, GridSettings::default());
-        self.quad.encode(encoder, &group, &covered, into, wanted)
+        draw(encoder, [&self.blank, &self.quad], &group, &covered, into, wanted)
     }
 
     /// Encodes `wheatstone_core::warp::grid` into a picture of the wanted view's size and the format.
@@ -78,7 +79,7 @@ impl Warps {
         let covered = shown.covered(wanted, 0.0..shown.reach.nearest)?;
         let map = PixelMap::between(wanted, &shown.view)?;
         let group = self.bind(gpu, &map, shown, wanted, settings);
-        self.grid.encode(encoder, &group, &covered, into, wanted)
+        draw(encoder, [&self.blank, &self.grid], &group, &covered, into, wanted)
     }
 
     fn bind(

@@ -33,22 +33,14 @@ pub(super) fn layout<Uniform>(
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("warp"), entries: &entries })
 }
 
-/// Builds the pipelines of a warp; what the driver says against them comes with the next [`Gpu::check`](crate::Gpu::check).
+/// The pass that empties pixels.
+pub(super) const BLANK: (&str, &str) = ("warp/blank", "warp_blank");
+
+/// Builds the pipeline of a file; what the driver says against it comes with the next [`Gpu::check`](crate::Gpu::check).
 ///
 /// # Errors
 /// [`GpuError::Refused`] for a file that makes no module.
 pub(super) fn build(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    warp: (&'static str, &'static str),
-    format: wgpu::TextureFormat,
-) -> Result<Drawing, GpuError> {
-    let pipeline = |file| build_pipeline(device, layout, file, format);
-    Ok(Drawing { warp: pipeline(warp)?, blank: pipeline(("warp/blank", "warp_blank"))? })
-}
-
-/// Builds the pipeline of a file.
-fn build_pipeline(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     (root, entry_point): (&'static str, &'static str),
@@ -87,47 +79,46 @@ fn build_pipeline(
     }))
 }
 
-/// A warp's pipeline, and one that empties pixels.
-#[derive(Debug)]
-pub(super) struct Drawing {
-    pub(super) warp: wgpu::RenderPipeline,
-    pub(super) blank: wgpu::RenderPipeline,
-}
-
-impl Drawing {
-    /// Encodes a pass over some pixels; the others are transparent after it.
-    pub(super) fn encode(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        group: &wgpu::BindGroup,
-        covered: &PixelRect,
-        into: &mut Canvas,
-        wanted: &View,
-    ) -> Result<(), WarpError> {
-        WarpError::unless_of_size(into.size(), wanted)?;
-        let before = into.draw(covered);
-        let load = match before {
-            Some(_) => wgpu::LoadOp::Load,
-            None => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("warp"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: into.view(),
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        pass.set_bind_group(0, group, &[]);
-        let blanked = before.iter().map(|before| (&self.blank, before));
-        for (pipeline, rect) in blanked.chain([(&self.warp, covered)]).filter(|(_, rect)| !rect.is_empty()) {
+/// Encodes a pass of a warp over some pixels; the others are transparent after it.
+///
+/// # Errors
+/// A canvas that is not of the wanted view's size.
+pub(super) fn draw(
+    encoder: &mut wgpu::CommandEncoder,
+    [blank, warp]: [&wgpu::RenderPipeline; 2],
+    group: &wgpu::BindGroup,
+    covered: &PixelRect,
+    into: &mut Canvas,
+    wanted: &View,
+) -> Result<(), WarpError> {
+    WarpError::unless_of_size(into.size(), wanted)?;
+    let before = into.draw(covered);
+    let load = match before {
+        Some(_) => wgpu::LoadOp::Load,
+        None => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+    };
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("warp"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: into.view(),
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    pass.set_bind_group(0, group, &[]);
+    let mut fill = |pipeline, rect: &PixelRect| {
+        if !rect.is_empty() {
             let PixelRect { columns, rows } = rect;
             pass.set_pipeline(pipeline);
             pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
             pass.draw(0..3, 0..1);
         }
-        Ok(())
+    };
+    for left in before.iter().flat_map(|before| before.without(covered)) {
+        fill(blank, &left);
     }
+    fill(warp, covered);
+    Ok(())
 }

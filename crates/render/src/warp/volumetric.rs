@@ -3,7 +3,7 @@
 use super::Canvas;
 use super::Shown;
 use super::depths::{LayerDepths, array_view};
-use super::pass::{Drawing, TEXTURE, build, layout};
+use super::pass::{BLANK, TEXTURE, build, draw, layout};
 use super::volumetric_uniform::LayeredWarpUniform;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::bind;
@@ -21,11 +21,12 @@ const LAYERS: wgpu::BindingType = wgpu::BindingType::Texture {
 #[derive(Debug)]
 pub struct VolumetricWarps {
     layout: wgpu::BindGroupLayout,
-    drawing: Drawing,
+    blank: wgpu::RenderPipeline,
+    warp: wgpu::RenderPipeline,
 }
 
 impl VolumetricWarps {
-    /// Builds the pipeline for pictures of a colour format that can be rendered to.
+    /// Builds the pipelines for pictures of a colour format that can be rendered to.
     ///
     /// # Errors
     /// A kernel or format that the driver refuses, a lost device.
@@ -37,8 +38,9 @@ impl VolumetricWarps {
 
     fn build(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let layout = layout::<LayeredWarpUniform>(device, &[LAYERS, TEXTURE, TEXTURE]);
-        let drawing = build(device, &layout, ("warp/volumetric", "warp_volumetric"), format)?;
-        Ok(Self { layout, drawing })
+        let [blank, warp] =
+            [BLANK, ("warp/volumetric", "warp_volumetric")].map(|file| build(device, &layout, file, format));
+        Ok(Self { layout, blank: blank?, warp: warp? })
     }
 
     /// Encodes `wheatstone_core::warp::volumetric` of a picture whose layers have these depths, into a picture of the wanted
@@ -76,7 +78,7 @@ impl VolumetricWarps {
             wgpu::BindingResource::TextureView(&all),
         ];
         let group = bind(&gpu.device, &self.layout, &resources);
-        self.drawing.encode(encoder, &group, &covered, into, wanted)
+        draw(encoder, [&self.blank, &self.warp], &group, &covered, into, wanted)
     }
 }
 
