@@ -10,7 +10,7 @@ use wheatstone_core::head::Pose;
 use wheatstone_core::view::View;
 
 /// Rounds in which everything is timed once, after one that is not.
-const ROUNDS: usize = 7;
+const ROUNDS: usize = 15;
 
 /// Age of the picture that is warped: five refreshes at 90 Hz.
 const AGE_S: f64 = 5.0 / 90.0;
