@@ -9,6 +9,8 @@ struct Warp {
     nearest: f32,
     // Width and height of the shown picture, pixels.
     size: vec2f,
+    // Width and height of one of its pixels in parts of the picture.
+    pixel: vec2f,
     // Least depth that the wanted view shows, metres.
     near_m: f32,
     // How far apart neighbours may move before the surface is torn between them, pixels.
@@ -22,6 +24,9 @@ struct Warp {
 @group(0) @binding(1) var color_source: texture_2d<f32>;
 // Depth of the first hit in metres; 0, or more than any other, without one.
 @group(0) @binding(2) var depth_source: texture_2d<f32>;
+// Interpolates colours, if the device does.
+@group(0) @binding(3) var color_sampler: sampler;
+@group(0) @binding(4) var nearest_texel: sampler;
 
 // Colour of a pixel; transparent outside of the picture.
 fn color_at(pixel: vec2f) -> vec4f {

@@ -1,5 +1,5 @@
 import package::lib::cover_picture::{cover_picture};
-import package::lib::warp::{color_at, depth_source, warp};
+import package::lib::warp::{color_at, depth_source, nearest_texel, warp};
 
 // The picture as a surface of its first hits (VR 5.3.2): `core::warp::grid`.
 
@@ -45,7 +45,7 @@ fn warp_grid(@builtin(position) position: vec4f) -> @location(0) vec4f {
 fn color_of(ray: Ray) -> vec4f {
     let step_px = max(ray.furthest_px / MOST_STEPS, 1.0);
     var at_px = (floor(ray.furthest_px / step_px) + 1.0) * step_px;
-    var before_px = disparity_px(ray, floor(ray.start + at_px * ray.along));
+    var before_px = disparity_px(ray, at_px);
     var is_in_front = before_px <= at_px;
     // What is behind the hole that the ray goes through, and where.
     var behind_px = FAR_PX;
@@ -53,7 +53,7 @@ fn color_of(ray: Ray) -> vec4f {
     var slope = FAR_PX;
     while at_px > 0.0 {
         at_px = max(at_px - step_px, 0.0);
-        let here_px = disparity_px(ray, floor(ray.start + at_px * ray.along));
+        let here_px = disparity_px(ray, at_px);
         let rise_px = here_px - before_px;
         let is_reached = here_px >= at_px;
         let enters = is_in_front && is_reached;
@@ -79,12 +79,8 @@ fn color_of(ray: Ray) -> vec4f {
 fn color_about(ray: Ray, at_px: f32, about_px: f32, slope: f32) -> vec4f {
     let at = ray.start + at_px * ray.along - 0.5;
     let first = floor(at);
-    let disparities = vec4f(
-        disparity_px(ray, first),
-        disparity_px(ray, first + vec2f(1.0, 0.0)),
-        disparity_px(ray, first + vec2f(0.0, 1.0)),
-        disparity_px(ray, first + vec2f(1.0, 1.0)),
-    );
+    let depths_m = textureGather(0, depth_source, nearest_texel, (first + 1.0) * warp.pixel).wzxy;
+    let disparities = select(vec4f(0.0), ray.disparity_m / depths_m, depths_m > vec4f(0.0));
     let counts = select(vec4f(1.0), vec4f(TORN_WEIGHT), abs(disparities - about_px) > vec4f(warp.tear_px));
     let met_px = dot(weights(at - first, counts), disparities);
     let moved = at + ray.along * ((met_px - at_px) / slope);
@@ -102,8 +98,9 @@ fn weights(along: vec2f, counts: vec4f) -> vec4f {
     return weights / dot(weights, vec4f(1.0));
 }
 
-// Disparity of the pixel nearest to one.
-fn disparity_px(ray: Ray, pixel: vec2f) -> f32 {
-    let depth_m = textureLoad(depth_source, vec2i(clamp(pixel, vec2f(0.0), warp.size - 1.0)), 0).x;
+// Disparity of the pixel, or of the nearest, that a ray is at.
+fn disparity_px(ray: Ray, at_px: f32) -> f32 {
+    let at = (ray.start + at_px * ray.along) * warp.pixel;
+    let depth_m = textureSampleLevel(depth_source, nearest_texel, at, 0.0).x;
     return select(0.0, ray.disparity_m / depth_m, depth_m > 0.0);
 }

@@ -19,6 +19,8 @@ files! {
     "lib/accumulate_minip",
     "lib/accumulate_mip",
     "lib/accumulate_xray",
+    "lib/bilinear_filtered",
+    "lib/bilinear_loaded",
     "lib/block_range",
     "lib/blocks_by_distance",
     "lib/blocks_by_maximum",

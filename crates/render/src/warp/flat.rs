@@ -1,19 +1,47 @@
 //! Quad and grid.
 
 use super::flat_uniform::WarpUniform;
-use super::pass::{BLANK, TEXTURE, build, draw, layout};
+use super::pass::{BLANK, TEXTURE, build, draw, float_texture, layout};
 use super::{Canvas, Shown};
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::bind;
+use crate::pipeline::KernelFiles;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::view::View;
 use wheatstone_core::warp::{GridSettings, PixelMap, WarpError};
+
+/// How colours between pixels are found.
+struct Interpolation {
+    colors: wgpu::BindingType,
+    sampler: wgpu::SamplerBindingType,
+    filter: wgpu::FilterMode,
+    /// The file of the slot.
+    bilinear: &'static str,
+}
+
+/// By the sampler.
+const FILTERED: Interpolation = Interpolation {
+    colors: float_texture(true),
+    sampler: wgpu::SamplerBindingType::Filtering,
+    filter: wgpu::FilterMode::Linear,
+    bilinear: "lib/bilinear_filtered",
+};
+
+/// By the kernel.
+const LOADED: Interpolation = Interpolation {
+    colors: TEXTURE,
+    sampler: wgpu::SamplerBindingType::NonFiltering,
+    filter: wgpu::FilterMode::Nearest,
+    bilinear: "lib/bilinear_loaded",
+};
 
 /// Warps to pictures of a format.
 #[derive(Debug)]
 pub struct Warps {
     format: wgpu::TextureFormat,
     layout: wgpu::BindGroupLayout,
+    /// Of colours and of depths.
+    samplers: [wgpu::Sampler; 2],
     blank: wgpu::RenderPipeline,
     quad: wgpu::RenderPipeline,
     grid: wgpu::RenderPipeline,
@@ -25,16 +53,45 @@ impl Warps {
     /// # Errors
     /// A kernel or format that the driver refuses, a lost device.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let warps = Self::build(&gpu.device, format)?;
+        if !gpu.capabilities().has_f32_filtering {
+            return Self::without_filtering(gpu, format);
+        }
+        let warps = Self::build(&gpu.device, format, &FILTERED)?;
         gpu.check()?;
         Ok(warps)
     }
 
-    fn build(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        let layout = layout::<WarpUniform>(device, &[TEXTURE; 2]);
-        let [blank, quad, grid] = [BLANK, ("warp/quad", "warp_quad"), ("warp/grid", "warp_grid")]
-            .map(|file| build(device, &layout, file, format));
-        Ok(Self { format, layout, blank: blank?, quad: quad?, grid: grid? })
+    /// The same for any device, whether it interpolates 32-bit floats or not.
+    ///
+    /// # Errors
+    /// As [`Warps::new`].
+    pub fn without_filtering(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        let warps = Self::build(&gpu.device, format, &LOADED)?;
+        gpu.check()?;
+        Ok(warps)
+    }
+
+    fn build(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        interpolation: &Interpolation,
+    ) -> Result<Self, GpuError> {
+        let samplers = [interpolation.sampler, wgpu::SamplerBindingType::NonFiltering];
+        let [colors, depths] = samplers.map(wgpu::BindingType::Sampler);
+        let layout = layout::<WarpUniform>(device, &[interpolation.colors, TEXTURE, colors, depths]);
+        let choices = [("lib/bilinear", interpolation.bilinear)];
+        let files = |root, entry_point| KernelFiles { root, choices: &choices, entry_point };
+        let [blank, quad, grid] = [BLANK, files("warp/quad", "warp_quad"), files("warp/grid", "warp_grid")]
+            .map(|files| build(device, &layout, &files, format));
+        let samplers = [interpolation.filter, wgpu::FilterMode::Nearest].map(|filter| {
+            device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("shown picture"),
+                mag_filter: filter,
+                min_filter: filter,
+                ..Default::default()
+            })
+        });
+        Ok(Self { format, layout, samplers, blank: blank?, quad: quad?, grid: grid? })
     }
 
     /// The format of the pictures.
@@ -102,6 +159,8 @@ impl Warps {
             uniform.as_entire_binding(),
             wgpu::BindingResource::TextureView(&color),
             wgpu::BindingResource::TextureView(&depth),
+            wgpu::BindingResource::Sampler(&self.samplers[0]),
+            wgpu::BindingResource::Sampler(&self.samplers[1]),
         ];
         bind(&gpu.device, &self.layout, &resources)
     }
@@ -116,7 +175,9 @@ mod tests {
     fn the_pipelines_build_on_the_noop_device() {
         build_on_noop_device(|device| {
             for format in [wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Bgra8UnormSrgb] {
-                Warps::build(device, format).unwrap();
+                for interpolation in [FILTERED, LOADED] {
+                    Warps::build(device, format, &interpolation).unwrap();
+                }
             }
         });
     }

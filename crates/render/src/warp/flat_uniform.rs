@@ -14,10 +14,11 @@ pub(super) struct WarpUniform {
     epipole: [f32; 3],
     nearest: f32,
     size: [f32; 2],
+    pixel: [f32; 2],
     near_m: f32,
     tear_px: f32,
     close_px: f32,
-    padding: [u32; 3],
+    padding: u32,
 }
 
 impl WarpUniform {
@@ -28,10 +29,11 @@ impl WarpUniform {
             epipole: vector(map.epipole),
             nearest: shown.reach.nearest as f32,
             size: shown.view.size.map(|side| side as f32),
+            pixel: shown.view.size.map(|side| 1.0 / side as f32),
             near_m: wanted.projection.depth_range_m().0 as f32,
             tear_px: settings.tear_px as f32,
             close_px: settings.close_px as f32,
-            padding: [0; 3],
+            padding: 0,
         }
     }
 }
@@ -47,7 +49,7 @@ mod tests {
             "lib/warp",
             "Warp",
             WarpUniform,
-            [matrix, epipole, nearest, size, near_m, tear_px, close_px]
+            [matrix, epipole, nearest, size, pixel, near_m, tear_px, close_px]
         );
     }
 }

@@ -3,23 +3,26 @@
 use super::Canvas;
 use crate::gpu::GpuError;
 use crate::groups::uniform;
+use crate::pipeline::KernelFiles;
 use crate::shader::compose;
 use wheatstone_core::view::{PixelRect, View};
 use wheatstone_core::warp::WarpError;
 
-/// A texture of floats that is read texel by texel.
-pub(super) const TEXTURE: wgpu::BindingType = wgpu::BindingType::Texture {
-    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-    view_dimension: wgpu::TextureViewDimension::D2,
-    multisampled: false,
-};
+/// A texture of floats between which nothing is interpolated.
+pub(super) const TEXTURE: wgpu::BindingType = float_texture(false);
 
-/// What pipelines read: a uniform buffer, then textures.
-pub(super) fn layout<Uniform>(
-    device: &wgpu::Device,
-    textures: &[wgpu::BindingType],
-) -> wgpu::BindGroupLayout {
-    let types = std::iter::once(uniform::<Uniform>()).chain(textures.iter().copied());
+/// A texture of floats.
+pub(super) const fn float_texture(filterable: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    }
+}
+
+/// What pipelines read: a uniform buffer, then textures and samplers.
+pub(super) fn layout<Uniform>(device: &wgpu::Device, others: &[wgpu::BindingType]) -> wgpu::BindGroupLayout {
+    let types = std::iter::once(uniform::<Uniform>()).chain(others.iter().copied());
     let entries: Vec<_> = (0..)
         .zip(types)
         .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
@@ -34,19 +37,20 @@ pub(super) fn layout<Uniform>(
 }
 
 /// The pass that empties pixels.
-pub(super) const BLANK: (&str, &str) = ("warp/blank", "warp_blank");
+pub(super) const BLANK: KernelFiles<'_> =
+    KernelFiles { root: "warp/blank", choices: &[], entry_point: "warp_blank" };
 
-/// Builds the pipeline of a file; what the driver says against it comes with the next [`Gpu::check`](crate::Gpu::check).
+/// Builds the pipeline of a warp's files; what the driver says against it comes with the next [`Gpu::check`](crate::Gpu::check).
 ///
 /// # Errors
-/// [`GpuError::Refused`] for a file that makes no module.
+/// [`GpuError::Refused`] for files that make no module.
 pub(super) fn build(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    (root, entry_point): (&'static str, &'static str),
+    &KernelFiles { root, choices, entry_point }: &KernelFiles<'_>,
     format: wgpu::TextureFormat,
 ) -> Result<wgpu::RenderPipeline, GpuError> {
-    let source = compose(root, &[]).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+    let source = compose(root, choices).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(root),
         source: wgpu::ShaderSource::Wgsl(source.text.into()),

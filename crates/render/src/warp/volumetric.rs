@@ -7,6 +7,7 @@ use super::pass::{BLANK, TEXTURE, build, draw, layout};
 use super::volumetric_uniform::LayeredWarpUniform;
 use crate::gpu::{Gpu, GpuError};
 use crate::groups::bind;
+use crate::pipeline::KernelFiles;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::view::View;
 use wheatstone_core::warp::{PixelMap, VolumetricSettings, WarpError};
@@ -38,8 +39,8 @@ impl VolumetricWarps {
 
     fn build(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let layout = layout::<LayeredWarpUniform>(device, &[LAYERS, TEXTURE, TEXTURE]);
-        let [blank, warp] =
-            [BLANK, ("warp/volumetric", "warp_volumetric")].map(|file| build(device, &layout, file, format));
+        let warp = KernelFiles { root: "warp/volumetric", choices: &[], entry_point: "warp_volumetric" };
+        let [blank, warp] = [BLANK, warp].map(|files| build(device, &layout, &files, format));
         Ok(Self { layout, blank: blank?, warp: warp? })
     }
 
