@@ -117,6 +117,32 @@ impl Default for Clip {
     }
 }
 
+impl Clip {
+    /// Thinnest that moving a face leaves the visible box, as a part of the volume's side.
+    pub const THINNEST: f64 = 0.01;
+
+    /// Where a face of the visible box is along its axis, texture space. Faces 0 to 2 are the low ones of x, y and z, 3 to 5 the
+    /// high ones.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn face(&self, face: usize) -> f64 {
+        if face < 3 { self.box_lo[face] } else { self.box_hi[face - 3] }
+    }
+
+    /// Moves a face of the visible box as far as the volume and the opposite face allow, texture space.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn move_face(&mut self, face: usize, to: f64) {
+        if face < 3 {
+            self.box_lo[face] = to.min(self.box_hi[face] - Self::THINNEST).max(0.0);
+        } else {
+            self.box_hi[face - 3] = to.max(self.box_lo[face - 3] + Self::THINNEST).min(1.0);
+        }
+    }
+}
+
 /// Everything about a picture but the volume and the view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {

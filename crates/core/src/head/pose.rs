@@ -34,6 +34,20 @@ impl Pose {
         self.position_m.is_finite() && self.orientation.is_finite() && self.orientation.is_normalized()
     }
 
+    /// The same pose with an orientation of unit length to the last digit; `None` if it is not [valid](Self::is_valid).
+    pub fn normalized(self) -> Option<Self> {
+        self.is_valid().then(|| Self { orientation: self.orientation.normalize(), ..self })
+    }
+
+    /// The pose on the way to another, 0 to 1: straight on, turning evenly the shorter way. Both must be
+    /// [valid](Self::is_valid).
+    pub fn between(&self, other: &Self, share: f64) -> Self {
+        Self {
+            position_m: self.position_m.lerp(other.position_m, share),
+            orientation: self.orientation.slerp(other.orientation, share).normalize(),
+        }
+    }
+
     /// Angle of the turn from this orientation to another, radians, 0 to π.
     pub fn angle_to_rad(&self, other: &Self) -> f64 {
         let between = self.orientation.inverse() * other.orientation;

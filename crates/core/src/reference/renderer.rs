@@ -14,6 +14,7 @@ use super::lanes_exact::Exact;
 use super::oracle::Oracle;
 use super::ray::{PixelRay, Ray, pixels_of_box};
 use super::value_sum::{Mean, ValueSum, XRay};
+use super::vector::Vec3;
 use super::volume::{PaddedVoxels, Sampler};
 use crate::cast::{CastParameters, Classifier};
 use crate::first_hits::{FirstHits, RayStarts};
@@ -22,6 +23,7 @@ use crate::scene::Mode;
 use crate::view::{RayField, View};
 use crate::volume::{Encoding, StorageKind, Volume};
 use fearless_simd::{Level, Simd, f32x16};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -81,6 +83,15 @@ impl Caster {
         let stored = encoding.encode(volume.voxels(), 0..volume.voxels().len());
         let voxels = PaddedVoxels::new(volume.grid().dims(), &stored);
         Self { encoding, voxels }
+    }
+
+    /// The value at a place in texture space, in the file's unit, interpolated between voxels; beyond the volume, that of its
+    /// nearest place.
+    pub fn value_at(&self, point_in_texture: DVec3) -> f64 {
+        let sampler = Sampler::new(&self.voxels, (1.0, 0.0));
+        let position = point_in_texture * sampler.dims().as_dvec3();
+        let [x, y, z] = position.to_array().map(Exact::from);
+        self.encoding.value(sampler.stored_at((), Vec3 { x, y, z }).into())
     }
 
     /// Casts every view on all cores, sixteen rays at once.

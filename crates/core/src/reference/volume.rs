@@ -236,9 +236,15 @@ impl<'a> Sampler<'a> {
     /// The normalised value at a position, clamped to the volume.
     #[inline(always)]
     pub(super) fn value_at<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> L {
+        self.normalised(self.stored_at(token, position))
+    }
+
+    /// The stored number at a position, clamped to the volume.
+    #[inline(always)]
+    pub(super) fn stored_at<L: Lanes>(&self, token: L::Token, position: Vec3<L>) -> L {
         let cell = self.cell(token, position);
         let PaddedVoxels { row, slice, .. } = *self.voxels;
-        self.normalised(cell.interpolate(self.voxels.neighbours(token, cell.index, 0, row, slice)))
+        cell.interpolate(self.voxels.neighbours(token, cell.index, 0, row, slice))
     }
 
     /// Differences of the normalised values one voxel before and after a position, along each axis.

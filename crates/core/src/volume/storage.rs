@@ -100,6 +100,11 @@ impl Encoding {
         (value - self.value_at_zero) / self.value_per_stored
     }
 
+    /// The value that a stored number stands for.
+    pub fn value(&self, stored: f64) -> f64 {
+        stored * self.value_per_stored + self.value_at_zero
+    }
+
     /// Stored numbers of a range of voxels.
     ///
     /// # Panics
@@ -139,7 +144,7 @@ mod tests {
             StoredVoxels::U16(v) => v.into_iter().map(f64::from).collect(),
             StoredVoxels::F32(v) => v.into_iter().map(f64::from).collect(),
         };
-        numbers.iter().map(|s| s * encoding.value_per_stored + encoding.value_at_zero).collect()
+        numbers.iter().map(|&stored| encoding.value(stored)).collect()
     }
 
     #[test]

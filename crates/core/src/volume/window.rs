@@ -2,6 +2,9 @@
 
 use thiserror::Error;
 
+/// Narrowest that a window is stretched to, as a part of its middle.
+const NARROWEST: f64 = 1e-6;
+
 /// The value interval that is normalised to [0, 1]: `v = clamp((x − lo) / (hi − lo), 0, 1)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
@@ -48,6 +51,18 @@ impl Window {
     /// Value that maps to 1.
     pub fn hi(self) -> f64 {
         self.hi
+    }
+
+    /// The window shifted by parts of its width (its *level*) and then so many times as wide about its middle (its *width*).
+    /// It stays at least a millionth of its middle wide.
+    ///
+    /// # Errors
+    /// [`WindowError`] if a bound would not be finite.
+    pub fn shifted_and_stretched(self, shift: f64, stretch: f64) -> Result<Self, WindowError> {
+        let level = 0.5 * (self.lo + self.hi) + shift * (self.hi - self.lo);
+        let narrowest = NARROWEST * level.abs().max(f64::MIN_POSITIVE / NARROWEST);
+        let half = 0.5 * ((self.hi - self.lo) * stretch).max(narrowest);
+        Self::new(level - half, level + half)
     }
 
     /// Normalises a value, clamped to [0, 1].

@@ -5,9 +5,6 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use wheatstone_core::scene::{Clip as SceneClip, ClipPlane};
 
-/// Thinnest box, as a part of the volume's side.
-const THINNEST: f64 = 0.01;
-
 /// A box, and a plane that may cut it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -48,10 +45,10 @@ impl Default for Clip {
 impl Clip {
     /// Moves one face of the box (0–2: low x, y, z; 3–5: high) as far as the volume and the opposite face allow.
     pub(super) fn move_face(&mut self, face: usize, to: f64) {
-        match face {
-            0..=2 => self.box_lo[face] = to.min(self.box_hi[face] - THINNEST).max(0.0),
-            3..=5 => self.box_hi[face - 3] = to.max(self.box_lo[face - 3] + THINNEST).min(1.0),
-            _ => {}
+        if face < 6 {
+            let mut clip = self.scene();
+            clip.move_face(face, to);
+            (self.box_lo, self.box_hi) = (clip.box_lo, clip.box_hi);
         }
     }
 
@@ -90,7 +87,7 @@ mod tests {
         clip.move_face(4, 0.3);
         assert_eq!(clip.box_hi, DVec3::new(1.0, 0.3, 1.0));
         clip.move_face(1, 0.9);
-        assert_eq!(clip.box_lo.y, 0.3 - THINNEST);
+        assert_eq!(clip.box_lo.y, 0.3 - SceneClip::THINNEST);
         clip.move_face(1, -5.0);
         clip.move_face(4, 7.0);
         assert_eq!(clip, Clip::default());

@@ -7,9 +7,6 @@ use wheatstone_core::volume::{Window, WindowError};
 /// Most points of each kind.
 const MOST_POINTS: usize = 256;
 
-/// Narrowest window, as a part of the larger of its bounds.
-const NARROWEST: f64 = 1e-6;
-
 /// Colour and opacity over normalised values. A point's values are clamped where it would pass its neighbours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -66,11 +63,9 @@ impl Transfer {
 
     /// Shifts the window by parts of its width and makes it so many times as wide about its middle.
     pub(super) fn window_level(&mut self, shift: f64, stretch: f64) {
-        let [lo, hi] = self.window;
-        let level = 0.5 * (lo + hi) + shift * (hi - lo);
-        let narrowest = NARROWEST * level.abs().max(f64::MIN_POSITIVE / NARROWEST);
-        let half = 0.5 * ((hi - lo) * stretch).max(narrowest);
-        self.window = [level - half, level + half];
+        let changed = self.window().and_then(|window| window.shifted_and_stretched(shift, stretch));
+        // Bounds that make no window are refused by the check.
+        self.window = changed.map_or_else(|error| [error.lo, error.hi], |window| [window.lo(), window.hi()]);
     }
 
     /// Moves an opacity point as far as its neighbours allow.

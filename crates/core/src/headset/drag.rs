@@ -1,0 +1,114 @@
+//! Hands that drag what cuts the volume.
+
+use super::button::Button;
+use super::crop::{Crop, Handle, Picked, Ray};
+use super::{Hand, Stand};
+use crate::head::Pose;
+use glam::{DAffine3, DVec3};
+
+/// What each hand drags by its trigger, and what it points at.
+///
+/// What a hand picks when it pulls the trigger is fixed to it as if by a rod, however far away it is: the picked point moves
+/// rigidly with the hand, all in a space that goes with the volume. A plane moves and turns with the rod, a face goes with its end
+/// along the axis of its own. A hand that reaches into the visible part picks what it points at from within.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Drags {
+    triggers: [Button; 2],
+    drags: [Option<Drag>; 2],
+    picked: [Option<(Handle, DVec3)>; 2],
+}
+
+/// Something that is dragged.
+#[derive(Debug, Clone, Copy)]
+struct Drag {
+    handle: Handle,
+    /// The rod's end, upright space.
+    point: DVec3,
+    /// What it is dragged from; `None` while the hand is not tracked.
+    from: Option<Start>,
+}
+
+/// Where hand, rod and crop have been together.
+#[derive(Debug, Clone, Copy)]
+struct Start {
+    upright_from_hand: DAffine3,
+    point: DVec3,
+    crop: Crop,
+}
+
+impl Drags {
+    /// What the hands that do not hold the volume do next, and which of them have taken hold of something by that.
+    pub(super) fn update(
+        &mut self,
+        crop: &mut Crop,
+        hands: &[Hand; 2],
+        is_holding: [bool; 2],
+        stand: &Stand,
+        upright_from_texture: DAffine3,
+    ) -> [bool; 2] {
+        [0, 1].map(|side: usize| {
+            let aim = hands[side].aim.and_then(Pose::normalized);
+            let has_pulled = aim.is_some() && self.triggers[side].press(hands[side].trigger);
+            if is_holding[side] || !self.triggers[side].is_down() {
+                self.drags[side] = None;
+            }
+            let Some(aim) = aim.filter(|_| !is_holding[side]) else {
+                self.picked[side] = None;
+                if let Some(drag) = &mut self.drags[side] {
+                    drag.from = None;
+                }
+                return false;
+            };
+            let ray = Ray::new(&aim, stand, upright_from_texture);
+            if self.drags[side].is_none() {
+                let other = self.drags[1 - side].map(|drag| drag.handle);
+                let picked = crop.pick(&ray).filter(|(handle, _)| Some(*handle) != other);
+                self.picked[side] = picked.map(|(handle, distance_m)| (handle, ray.at(distance_m)));
+                if has_pulled {
+                    self.drags[side] =
+                        self.picked[side].map(|(handle, point)| Drag { handle, point, from: None });
+                }
+            }
+            let upright_from_hand = stand.world_from_upright().inverse() * aim.world_from_own();
+            if let Some(drag) = &mut self.drags[side] {
+                drag.follow(crop, upright_from_hand, upright_from_texture);
+                self.picked[side] = Some((drag.handle, drag.point));
+            }
+            has_pulled && self.drags[side].is_some()
+        })
+    }
+
+    /// What the hands point at, or drag.
+    pub(super) fn picked(&self, stand: &Stand) -> [Option<Picked>; 2] {
+        let world_from_upright = stand.world_from_upright();
+        self.picked.map(|picked| {
+            let (handle, point) = picked?;
+            Some(Picked { handle, point_m: world_from_upright.transform_point3(point) })
+        })
+    }
+
+    /// Which triggers are pulled.
+    pub(super) fn is_pulled(&self) -> [bool; 2] {
+        self.triggers.map(Button::is_down)
+    }
+
+    /// Ends what is being dragged: it takes another pull to drag on.
+    pub(super) fn let_go(&mut self) {
+        self.drags = [None; 2];
+    }
+}
+
+impl Drag {
+    fn follow(&mut self, crop: &mut Crop, upright_from_hand: DAffine3, upright_from_texture: DAffine3) {
+        let start = *self.from.get_or_insert(Start { upright_from_hand, point: self.point, crop: *crop });
+        let has_moved = start.upright_from_hand != upright_from_hand;
+        let motion = if has_moved {
+            upright_from_hand * start.upright_from_hand.inverse()
+        } else {
+            DAffine3::IDENTITY
+        };
+        self.point = motion.transform_point3(start.point);
+        let ends = [start.point, self.point];
+        *crop = crop.with_moved(self.handle, &start.crop, ends, motion, upright_from_texture);
+    }
+}
