@@ -46,36 +46,45 @@ impl Drags {
         stand: &Stand,
         upright_from_texture: DAffine3,
     ) -> [bool; 2] {
-        [0, 1].map(|side: usize| {
-            let aim = hands[side].aim.and_then(Pose::normalized);
-            let has_pulled = aim.is_some() && self.triggers[side].press(hands[side].trigger);
+        let tracked = [0, 1].map(|side: usize| hands[side].aim.and_then(Pose::normalized));
+        let has_pulled = [0, 1]
+            .map(|side: usize| tracked[side].is_some() && self.triggers[side].press(hands[side].trigger));
+        let free = [0, 1].map(|side: usize| tracked[side].filter(|_| !is_holding[side]));
+        let upright_from_world = stand.world_from_upright().inverse();
+        for side in 0..2 {
             if is_holding[side] || !self.triggers[side].is_down() {
                 self.drags[side] = None;
             }
-            let Some(aim) = aim.filter(|_| !is_holding[side]) else {
-                self.picked[side] = None;
-                if let Some(drag) = &mut self.drags[side] {
-                    drag.from = None;
-                }
-                return false;
-            };
-            let ray = Ray::new(&aim, stand, upright_from_texture);
-            if self.drags[side].is_none() {
-                let other = self.drags[1 - side].map(|drag| drag.handle);
-                let picked = crop.pick(&ray).filter(|(handle, _)| Some(*handle) != other);
-                self.picked[side] = picked.map(|(handle, distance_m)| (handle, ray.at(distance_m)));
-                if has_pulled {
-                    self.drags[side] =
-                        self.picked[side].map(|(handle, point)| Drag { handle, point, from: None });
-                }
-            }
-            let upright_from_hand = stand.world_from_upright().inverse() * aim.world_from_own();
             if let Some(drag) = &mut self.drags[side] {
-                drag.follow(crop, upright_from_hand, upright_from_texture);
-                self.picked[side] = Some((drag.handle, drag.point));
+                let hand = free[side].map(|aim| upright_from_world * aim.world_from_own());
+                drag.follow(crop, hand, upright_from_texture);
             }
-            has_pulled && self.drags[side].is_some()
-        })
+        }
+        let rays = free.map(|aim| aim.map(|aim| Ray::new(&aim, stand, upright_from_texture)));
+        let has_taken = [0, 1].map(|side: usize| {
+            if has_pulled[side] {
+                self.drags[side] = rays[side].as_ref().zip(free[side]).and_then(|(ray, aim)| {
+                    let (handle, point) = self.pick(side, crop, ray)?;
+                    let upright_from_hand = upright_from_world * aim.world_from_own();
+                    let start = Start { upright_from_hand, point, crop: *crop };
+                    Some(Drag { handle, point, from: Some(start) })
+                });
+            }
+            has_pulled[side] && self.drags[side].is_some()
+        });
+        self.picked = [0, 1].map(|side: usize| match (&rays[side], self.drags[side]) {
+            (Some(_), Some(drag)) => Some((drag.handle, drag.point)),
+            (Some(ray), None) => self.pick(side, crop, ray),
+            (None, _) => None,
+        });
+        has_taken
+    }
+
+    /// What a hand points at, unless the other one drags it, and where, upright space.
+    fn pick(&self, side: usize, crop: &Crop, ray: &Ray) -> Option<(Handle, DVec3)> {
+        let (handle, distance_m) = crop.pick(ray)?;
+        let is_taken = self.drags[1 - side].is_some_and(|drag| drag.handle == handle);
+        (!is_taken).then(|| (handle, ray.at(distance_m)))
     }
 
     /// What the hands point at, or drag.
@@ -99,8 +108,19 @@ impl Drags {
 }
 
 impl Drag {
-    fn follow(&mut self, crop: &mut Crop, upright_from_hand: DAffine3, upright_from_texture: DAffine3) {
-        let start = *self.from.get_or_insert(Start { upright_from_hand, point: self.point, crop: *crop });
+    /// Moves what is dragged with a hand, or holds it still while the hand is not tracked.
+    fn follow(
+        &mut self,
+        crop: &mut Crop,
+        upright_from_hand: Option<DAffine3>,
+        upright_from_texture: DAffine3,
+    ) {
+        let Some(upright_from_hand) = upright_from_hand else {
+            self.from = None;
+            return;
+        };
+        let here = Start { upright_from_hand, point: self.point, crop: *crop };
+        let start = self.from.get_or_insert(here);
         let has_moved = start.upright_from_hand != upright_from_hand;
         let motion = if has_moved {
             upright_from_hand * start.upright_from_hand.inverse()

@@ -3,6 +3,7 @@
 use crate::cast::CastParameters;
 use crate::head::Pose;
 use crate::reference::{Aids, Caster};
+use crate::scene::Mode;
 use crate::view::{Frustum, Projection, View};
 use glam::DVec3;
 
@@ -12,7 +13,7 @@ const HALF_WIDTH: f64 = 1e-6;
 /// What is under a pointer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pointed {
-    /// Where something is seen first, world space, metres.
+    /// Where it is, world space, metres.
     pub point_m: DVec3,
     /// From the pointer, metres.
     pub distance_m: f64,
@@ -20,11 +21,15 @@ pub struct Pointed {
     pub value: f64,
 }
 
-/// The value where a hand's aim meets what is visible: where a picture from the hand would have its first hit, in the middle of
-/// its only pixel. `None` if the aim is none or meets nothing, and for modes without first hits (projections).
+/// The value where a hand's aim meets what is visible: at the [depth](crate::image::Image::depth_m) that a picture from the hand
+/// would have in the middle of its only pixel. That is the first hit of composites and isosurfaces, and the extreme of maximum and
+/// minimum projections. `None` if the aim is none or meets nothing, and for means and X-rays, which see no place of their own.
 ///
-/// It costs one ray of the reference caster.
+/// It costs one ray of the reference caster, which takes the place of the volume: it holds the voxels itself.
 pub fn value_under(aim: &Pose, caster: &Caster, parameters: &CastParameters) -> Option<Pointed> {
+    if matches!(parameters.mode, Mode::Mean | Mode::XRay) {
+        return None;
+    }
     let aim = aim.normalized()?;
     let frustum = Frustum {
         left: -HALF_WIDTH,
