@@ -2,8 +2,8 @@
 
 use super::button::Button;
 use super::crop::{Crop, Handle, Picked, Ray};
+use super::hand::tracked;
 use super::{Hand, Stand};
-use crate::head::Pose;
 use glam::{DAffine3, DVec3};
 
 /// What each hand drags by its trigger, and what it points at.
@@ -46,10 +46,10 @@ impl Drags {
         stand: &Stand,
         upright_from_texture: DAffine3,
     ) -> [bool; 2] {
-        let tracked = [0, 1].map(|side: usize| hands[side].aim.and_then(Pose::normalized));
-        let has_pulled = [0, 1]
-            .map(|side: usize| tracked[side].is_some() && self.triggers[side].press(hands[side].trigger));
-        let free = [0, 1].map(|side: usize| tracked[side].filter(|_| !is_holding[side]));
+        let aims = [0, 1].map(|side: usize| tracked(hands[side].aim));
+        let has_pulled =
+            [0, 1].map(|side: usize| aims[side].is_some() && self.triggers[side].press(hands[side].trigger));
+        let free = [0, 1].map(|side: usize| aims[side].filter(|_| !is_holding[side]));
         let upright_from_world = stand.world_from_upright().inverse();
         for side in 0..2 {
             if is_holding[side] || !self.triggers[side].is_down() {

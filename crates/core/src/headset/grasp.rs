@@ -1,6 +1,7 @@
 //! Hands that hold the volume.
 
 use super::button::Button;
+use super::hand::tracked;
 use super::{Hand, Stand};
 use crate::head::Pose;
 use glam::{DQuat, DVec3};
@@ -37,17 +38,16 @@ struct Hold {
 impl Grasp {
     /// What the hands do next: where the volume is then, and which of them have taken hold of it by that.
     pub(super) fn update(&mut self, stand: Stand, hands: &[Hand; 2]) -> (Stand, [bool; 2]) {
-        let tracked = [0, 1].map(|side| hands[side].grip.and_then(Pose::normalized));
-        let grabbed = [0, 1]
-            .map(|side: usize| tracked[side].is_some() && self.squeezes[side].press(hands[side].squeeze));
-        let carried = self.hold.and_then(|hold| hold.carried(&tracked)).filter(Stand::is_valid);
-        let stand = carried.unwrap_or(stand);
-        let grips = [0, 1].map(|side: usize| tracked[side].filter(|_| self.squeezes[side].is_down()));
+        let grips = [0, 1].map(|side: usize| tracked(hands[side].grip));
+        let grabbed =
+            [0, 1].map(|side: usize| grips[side].is_some() && self.squeezes[side].press(hands[side].squeeze));
+        let stand = self.hold.and_then(|hold| hold.carried(&grips)).unwrap_or(stand);
+        let holding = [0, 1].map(|side: usize| grips[side].filter(|_| self.squeezes[side].is_down()));
         self.hold = match self.hold {
             // What one hand holds is fixed to it: no rounding adds up.
-            Some(hold) if hold.is_of_one_of(&grips) => Some(hold),
-            _ if grips == [None, None] => None,
-            _ => Some(Hold { grips, stand }),
+            Some(hold) if hold.is_of_one_of(&holding) => Some(hold),
+            _ if holding == [None, None] => None,
+            _ => Some(Hold { grips: holding, stand }),
         };
         (stand, grabbed)
     }
@@ -71,11 +71,11 @@ impl Hold {
     }
 
     /// Where the volume is carried by the same hands; `None` if one of them is not tracked.
-    fn carried(&self, tracked: &[Option<Pose>; 2]) -> Option<Stand> {
+    fn carried(&self, now: &[Option<Pose>; 2]) -> Option<Stand> {
         match self.grips {
-            [Some(left), Some(right)] => Some(by_two([left, right], [tracked[0]?, tracked[1]?], &self.stand)),
-            [Some(left), None] => Some(by_one(left, tracked[0]?, &self.stand)),
-            [None, Some(right)] => Some(by_one(right, tracked[1]?, &self.stand)),
+            [Some(left), Some(right)] => Some(by_two([left, right], [now[0]?, now[1]?], &self.stand)),
+            [Some(left), None] => Some(by_one(left, now[0]?, &self.stand)),
+            [None, Some(right)] => Some(by_one(right, now[1]?, &self.stand)),
             [None, None] => None,
         }
     }

@@ -21,6 +21,9 @@ impl Side {
     }
 }
 
+/// Farthest from the world's origin that a hand is tracked, metres.
+const FARTHEST_M: f64 = 1000.0;
+
 /// What a hand does. A hand that is not tracked has no poses, and nothing pressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hand {
@@ -36,4 +39,9 @@ pub struct Hand {
     pub stick: [f32; 2],
     /// Whether the menu button is down.
     pub menu: bool,
+}
+
+/// A pose that can be reckoned with: valid, its orientation of unit length to the last digit, and not absurdly far away.
+pub(super) fn tracked(pose: Option<Pose>) -> Option<Pose> {
+    pose?.normalized().filter(|pose| pose.position_m.abs().max_element() <= FARTHEST_M)
 }

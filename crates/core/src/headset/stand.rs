@@ -81,10 +81,6 @@ impl Stand {
     pub fn placement(&self, grid: &Grid, up: AnatomicalDirection) -> Placement {
         Placement::of_grid(grid, self.world_from_upright() * world_from_patient(grid, up))
     }
-
-    pub(super) fn is_valid(&self) -> bool {
-        self.pose.is_valid() && self.longest_side_m.is_finite() && self.longest_side_m > 0.0
-    }
 }
 
 /// The turn about +Y that an orientation contains (its twist); none where it turns all upside down.

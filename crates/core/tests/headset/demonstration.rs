@@ -17,9 +17,7 @@ fn play(recording: &Recording, grid: &Grid, up: AnatomicalDirection) -> (Interac
         let changes = interaction.update(tick, current);
         steps += changes.preset_steps;
         current = changes.window;
-        for side in 0..2 {
-            grabbed[side] += u32::from(changes.grabbed[side]);
-        }
+        grabbed = [0, 1].map(|side: usize| grabbed[side] + u32::from(changes.grabbed[side]));
     }
     assert_eq!(current, window());
     (interaction, steps, grabbed)

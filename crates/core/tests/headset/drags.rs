@@ -36,14 +36,6 @@ fn moved(pose: &Pose, by_m: DVec3) -> Pose {
     Pose { position_m: pose.position_m + by_m, ..*pose }
 }
 
-fn with_plane() -> Interaction {
-    let clip = Clip {
-        plane: Some(ClipPlane { normal: DVec3::new(0.0, 0.0, -2.0), offset_m: 1.16 }),
-        ..Clip::default()
-    };
-    Interaction::new(&grid(), Superior, stand(), &clip)
-}
-
 /// The plane as the volume sees it: what it keeps of some points in texture space, metres, signed.
 fn heights_m(interaction: &Interaction) -> [f64; 4] {
     let plane = interaction.clip().plane.unwrap();

@@ -132,7 +132,7 @@ proptest! {
 
     #[test]
     fn whatever_hands_do_the_volume_stays_somewhere(ticks in prop::collection::vec(any_hands(), 1..60)) {
-        let mut interaction = interaction();
+        let mut interaction = with_plane();
         for hands in ticks {
             update(&mut interaction, hands);
             let stand = interaction.stand();
@@ -140,6 +140,8 @@ proptest! {
             prop_assert!((LONGEST_SIDES_M[0]..=LONGEST_SIDES_M[1]).contains(&stand.longest_side_m));
             let clip = interaction.clip();
             prop_assert!((clip.box_hi - clip.box_lo).min_element() > 0.009);
+            let plane = clip.plane.unwrap();
+            prop_assert!((plane.normal.length() - 1.0).abs() < ROUNDING && plane.offset_m.is_finite());
         }
     }
 

@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use wheatstone_core::head::Pose;
 use wheatstone_core::headset::{Changes, Hand, Interaction, Stand, Tick};
-use wheatstone_core::scene::Clip;
+use wheatstone_core::scene::{Clip, ClipPlane};
 use wheatstone_core::view::AnatomicalDirection;
 use wheatstone_core::volume::{Grid, Window};
 
@@ -32,6 +32,15 @@ pub(crate) fn stand() -> Stand {
 
 pub(crate) fn interaction() -> Interaction {
     Interaction::new(&grid(), AnatomicalDirection::Superior, stand(), &Clip::default())
+}
+
+/// The same with a plane across it that cuts away what is in front.
+pub(crate) fn with_plane() -> Interaction {
+    let clip = Clip {
+        plane: Some(ClipPlane { normal: DVec3::new(0.0, 0.0, -2.0), offset_m: 1.16 }),
+        ..Clip::default()
+    };
+    Interaction::new(&grid(), AnatomicalDirection::Superior, stand(), &clip)
 }
 
 pub(crate) fn window() -> Window {

@@ -56,7 +56,7 @@ fn demonstration() -> Recording {
 fn assert_close(a: &Tick, b: &Tick, tolerance: f64) {
     let pair = |a: Option<Pose>, b: Option<Pose>| match (a, b) {
         (Some(a), Some(b)) => {
-            assert!(a.distance_to_m(&b).max(a.angle_to_rad(&b)) <= tolerance, "{a:?} {b:?}")
+            assert!(a.distance_to_m(&b).max(a.angle_to_rad(&b)) <= tolerance, "{a:?} {b:?}");
         }
         (a, b) => assert_eq!(a, b),
     };
