@@ -154,6 +154,20 @@ fn frusta_and_period_are_written_once() {
 }
 
 #[test]
+fn the_documented_example_is_read() {
+    let document = include_str!("../../../../docs/recordings.md");
+    let example = document.split("```json\n").nth(1).unwrap().split("```").next().unwrap();
+    let recording = Recording::read(example.as_bytes()).unwrap();
+    let [first, last] = recording.ticks() else { panic!("{recording:?}") };
+    assert!(first.eyes.is_some() && last.eyes.is_none());
+    assert_eq!(first.eyes.unwrap()[1].frustum.far_m, f64::INFINITY);
+    assert_eq!((first.period_s, last.period_s), (0.02, 0.04));
+    assert!(first.hands[1].grip.is_some() && last.hands[0].stick == [-1.0, 0.25] && last.hands[1].menu);
+    assert_eq!(text(&recording), example);
+    assert!(document.contains("8192 bytes") && document.contains("324,000 ticks"));
+}
+
+#[test]
 fn bad_lines_are_refused_by_number() {
     let whole = text(&demonstration());
     let lines: Vec<&str> = whole.lines().take(4).collect();
