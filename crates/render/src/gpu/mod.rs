@@ -45,14 +45,30 @@ pub fn adapters() -> Vec<AdapterDescription> {
     ranked_adapters(&instance()).iter().map(describe).collect()
 }
 
-/// The graphics APIs that adapters are looked for in. Arguments of indirect dispatches are not checked by a dispatch before each:
-/// kernels count them up to what a picture holds.
+/// The graphics APIs that adapters are looked for in.
 pub fn instance() -> wgpu::Instance {
     wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
-        flags: wgpu::InstanceFlags::default() - wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL,
+        flags: instance_flags(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     })
+}
+
+/// What an instance checks. Arguments of indirect dispatches are not checked by a dispatch before each: kernels count them up to
+/// what a picture holds.
+pub fn instance_flags() -> wgpu::InstanceFlags {
+    wgpu::InstanceFlags::default() - wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL
+}
+
+/// How a device is to be opened: with the features that are of use and all that the adapter's limits allow.
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("wheatstone"),
+        required_features: Capabilities::wanted_features() & adapter.features(),
+        required_limits: adapter.limits(),
+        memory_hints: memory_hints(adapter),
+        ..Default::default()
+    }
 }
 
 impl Gpu {
@@ -105,24 +121,18 @@ impl Gpu {
     ) -> Result<Self, GpuError> {
         let found = candidates.len();
         let adapter = candidates.into_iter().find(accept).ok_or(GpuError::NoAdapter { found })?;
-        let description = describe(&adapter);
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("wheatstone"),
-            required_features: Capabilities::wanted_features() & adapter.features(),
-            required_limits: adapter.limits(),
-            memory_hints: memory_hints(&description),
-            ..Default::default()
-        }))
-        .map_err(|error| GpuError::Device { adapter: description.name.clone(), reason: error.to_string() })?;
-        Ok(Self::from_parts(adapter, device, queue, description))
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
+            .map_err(|error| GpuError::Device {
+                adapter: adapter.get_info().name,
+                reason: error.to_string(),
+            })?;
+        Ok(Self::adopt(adapter, device, queue))
     }
 
-    fn from_parts(
-        adapter: wgpu::Adapter,
-        device: wgpu::Device,
-        queue: wgpu::Queue,
-        description: AdapterDescription,
-    ) -> Self {
+    /// Takes a device that was opened elsewhere as [`device_descriptor`] asks, such as by the runtime of a headset. From now on its
+    /// errors, its loss included, are returned by [`Gpu::check`].
+    pub fn adopt(adapter: wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let description = describe(&adapter);
         let fault = Arc::new(Mutex::new(None));
         let keep_first = |fault: &Mutex<Option<GpuError>>, error: GpuError| {
             fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
@@ -222,8 +232,12 @@ impl Gpu {
 }
 
 /// On software the device's memory is the program's: blocks of it that are mostly empty are not worth the allocations they spare.
-fn memory_hints(description: &AdapterDescription) -> wgpu::MemoryHints {
-    if description.is_software { wgpu::MemoryHints::MemoryUsage } else { wgpu::MemoryHints::Performance }
+fn memory_hints(adapter: &wgpu::Adapter) -> wgpu::MemoryHints {
+    if is_software(adapter) { wgpu::MemoryHints::MemoryUsage } else { wgpu::MemoryHints::Performance }
+}
+
+fn is_software(adapter: &wgpu::Adapter) -> bool {
+    adapter.get_info().device_type == wgpu::DeviceType::Cpu
 }
 
 fn ranked_adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
@@ -243,7 +257,7 @@ fn describe(adapter: &wgpu::Adapter) -> AdapterDescription {
     AdapterDescription {
         driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
         backend: info.backend.to_string(),
-        is_software: info.device_type == wgpu::DeviceType::Cpu,
+        is_software: is_software(adapter),
         capabilities: Capabilities::of(adapter),
         name: info.name,
     }

@@ -1,0 +1,153 @@
+//! Which button of which controller does what.
+
+use wheatstone_core::headset::Side;
+
+/// What hands do, as actions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Input {
+    /// Pose of the fist.
+    Grip,
+    /// Pose of the pointing ray.
+    Aim,
+    /// Squeezing.
+    Squeeze,
+    /// The trigger.
+    Trigger,
+    /// The thumb-stick.
+    Stick,
+    /// A track pad that stands in for a thumb-stick while it is pressed.
+    Pad,
+    /// Whether that is pressed.
+    PadPressed,
+    /// The menu button.
+    Menu,
+    /// The motor.
+    Haptic,
+}
+
+/// A kind of controller (an interaction profile) and what its parts are bound to.
+pub(crate) struct Profile {
+    /// Path of the interaction profile.
+    pub(crate) path: &'static str,
+    /// Parts of either hand's controller.
+    both: &'static [(Input, &'static str)],
+    /// Parts that only the left or only the right one has.
+    one: &'static [(Side, Input, &'static str)],
+}
+
+impl Profile {
+    /// What is bound to which path.
+    pub(crate) fn bindings(&self) -> impl Iterator<Item = (Input, String)> {
+        let path = |side, part: &str| format!("{}/{part}", user_path(side));
+        let both = Side::BOTH
+            .into_iter()
+            .flat_map(move |side| self.both.iter().map(move |(input, part)| (*input, path(side, part))));
+        both.chain(self.one.iter().map(move |(side, input, part)| (*input, path(*side, part))))
+    }
+}
+
+/// The runtime's path of a hand.
+pub(crate) fn user_path(side: Side) -> &'static str {
+    match side {
+        Side::Left => "/user/hand/left",
+        Side::Right => "/user/hand/right",
+    }
+}
+
+const GRIP: (Input, &str) = (Input::Grip, "input/grip/pose");
+const AIM: (Input, &str) = (Input::Aim, "input/aim/pose");
+const HAPTIC: (Input, &str) = (Input::Haptic, "output/haptic");
+const TRIGGER: (Input, &str) = (Input::Trigger, "input/trigger/value");
+const STICK: (Input, &str) = (Input::Stick, "input/thumbstick");
+const MENU: (Input, &str) = (Input::Menu, "input/menu/click");
+
+/// Every controller that is known. Runtimes map others to these.
+///
+/// The simple controller has one button beside the menu's. It squeezes, as the pinch of a bare hand does: taking hold of the volume is
+/// what no hand can do without. Controllers whose menu button is the runtime's own have it on the upper face button.
+pub(crate) const PROFILES: [Profile; 5] = [
+    Profile {
+        path: "/interaction_profiles/khr/simple_controller",
+        both: &[GRIP, AIM, (Input::Squeeze, "input/select/click"), MENU, HAPTIC],
+        one: &[],
+    },
+    Profile {
+        path: "/interaction_profiles/valve/index_controller",
+        both: &[
+            GRIP,
+            AIM,
+            (Input::Squeeze, "input/squeeze/value"),
+            TRIGGER,
+            STICK,
+            (Input::Menu, "input/b/click"),
+            HAPTIC,
+        ],
+        one: &[],
+    },
+    Profile {
+        path: "/interaction_profiles/oculus/touch_controller",
+        both: &[GRIP, AIM, (Input::Squeeze, "input/squeeze/value"), TRIGGER, STICK, HAPTIC],
+        one: &[
+            (Side::Left, Input::Menu, "input/menu/click"),
+            (Side::Left, Input::Menu, "input/y/click"),
+            (Side::Right, Input::Menu, "input/b/click"),
+        ],
+    },
+    Profile {
+        path: "/interaction_profiles/microsoft/motion_controller",
+        both: &[GRIP, AIM, (Input::Squeeze, "input/squeeze/click"), TRIGGER, STICK, MENU, HAPTIC],
+        one: &[],
+    },
+    Profile {
+        path: "/interaction_profiles/htc/vive_controller",
+        both: &[
+            GRIP,
+            AIM,
+            (Input::Squeeze, "input/squeeze/click"),
+            TRIGGER,
+            (Input::Pad, "input/trackpad"),
+            (Input::PadPressed, "input/trackpad/click"),
+            MENU,
+            HAPTIC,
+        ],
+        one: &[],
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_controller_can_hold_and_point_with_either_hand() {
+        for profile in &PROFILES {
+            let bindings: Vec<_> = profile.bindings().collect();
+            for side in Side::BOTH {
+                for input in [Input::Grip, Input::Aim, Input::Squeeze, Input::Menu, Input::Haptic] {
+                    let bound =
+                        |(what, path): &(Input, String)| *what == input && path.starts_with(user_path(side));
+                    assert!(bindings.iter().any(bound), "{} {side:?} {input:?}", profile.path);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_part_does_two_things() {
+        for profile in &PROFILES {
+            let paths: Vec<_> = profile.bindings().map(|(_, path)| path).collect();
+            let distinct: HashSet<_> = paths.iter().collect();
+            assert_eq!(distinct.len(), paths.len(), "{}", profile.path);
+        }
+    }
+
+    #[test]
+    fn a_pad_is_of_use_only_with_its_press() {
+        for profile in &PROFILES {
+            let count = |wanted| profile.bindings().filter(|(input, _)| *input == wanted).count();
+            assert_eq!(count(Input::Pad), count(Input::PadPressed), "{}", profile.path);
+            assert!(count(Input::Stick) == 0 || count(Input::Pad) == 0, "{}", profile.path);
+        }
+    }
+}

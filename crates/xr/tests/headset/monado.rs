@@ -1,0 +1,196 @@
+//! Monado, and tests that run with its libraries.
+//!
+//! Monado, its client library and its drivers need newer system libraries than the machine may have. So a test starts the service, and then
+//! itself once more, both by the dynamic loader that belongs to them; what it is to show happens in that second process.
+
+use crate::remote::Remote;
+use std::ffi::OsString;
+use std::io::{BufRead as _, BufReader};
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Where Monado is.
+const MONADO: &str = "WHEATSTONE_MONADO";
+/// Why there is none.
+const SKIPPED: &str = "WHEATSTONE_SKIP_XR_TESTS";
+/// Set in the second process.
+const INSIDE: &str = "WHEATSTONE_XR_INSIDE";
+const PORT: &str = "WHEATSTONE_XR_PORT";
+const SERVICE: &str = "WHEATSTONE_XR_SERVICE";
+
+/// Runs the service, and ends it when it is told to or when whoever started it is gone: then its standard input ends.
+const KEEPER: &str = r#"exec 3<&0; "$@" </dev/null & pid=$!; echo $pid; (read -r _ <&3; kill -9 $pid) & wait $pid"#;
+
+/// One after the other: they share two cores with the compositor.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// What a test runs in.
+pub(crate) struct Surroundings {
+    /// Whether the service runs.
+    pub(crate) with_service: bool,
+    /// Further environment of the second process.
+    pub(crate) environment: Vec<(&'static str, OsString)>,
+}
+
+impl Default for Surroundings {
+    fn default() -> Self {
+        Self { with_service: true, environment: Vec::new() }
+    }
+}
+
+/// The service, as the test sees it.
+pub(crate) struct Monado {
+    port: u16,
+    service: u32,
+}
+
+impl Monado {
+    /// Devices that the test moves.
+    pub(crate) fn remote(&self) -> Remote {
+        Remote::connect(self.port)
+    }
+
+    /// Ends the service as a crash would.
+    pub(crate) fn kill(&self) {
+        assert!(Command::new("kill").args(["-9", &self.service.to_string()]).status().unwrap().success());
+    }
+}
+
+/// Runs a test's body with Monado.
+pub(crate) fn inside<Test>(test: Test, body: impl FnOnce(&Monado)) -> Option<String> {
+    inside_with(test, Surroundings::default(), body)
+}
+
+/// Runs a test's body in a second process, with Monado's libraries. Returns what that process wrote; nothing where it is skipped, and in
+/// the second process.
+pub(crate) fn inside_with<Test>(
+    _: Test,
+    surroundings: Surroundings,
+    body: impl FnOnce(&Monado),
+) -> Option<String> {
+    if std::env::var_os(INSIDE).is_some() {
+        let number = |name| std::env::var(name).map_or(0, |value| value.parse().unwrap());
+        body(&Monado { port: u16::try_from(number(PORT)).unwrap(), service: number(SERVICE) });
+        return None;
+    }
+    let prefix = match prefix() {
+        Ok(prefix) => prefix,
+        Err(reason) => {
+            eprintln!("skipped: {reason}");
+            return None;
+        }
+    };
+    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let (_, path) = std::any::type_name::<Test>().split_once("::").unwrap();
+    Some(run(&prefix, path, surroundings))
+}
+
+/// The folder that `scripts/monado.sh` has made, or why there is none.
+fn prefix() -> Result<PathBuf, String> {
+    if let Some(prefix) = std::env::var_os(MONADO) {
+        return Ok(prefix.into());
+    }
+    if let Ok(reason) = std::env::var(SKIPPED) {
+        return Err(reason);
+    }
+    let cache = std::env::var_os("XDG_CACHE_HOME").map_or_else(
+        || PathBuf::from(std::env::var_os("HOME").unwrap_or_default()).join(".cache"),
+        PathBuf::from,
+    );
+    let prefix = cache.join("wheatstone/monado");
+    assert!(
+        prefix.join("layout").exists(),
+        "no Monado in {}: run scripts/monado.sh, or say in {SKIPPED} why these tests are skipped",
+        prefix.display()
+    );
+    Ok(prefix)
+}
+
+fn run(prefix: &Path, test: &str, surroundings: Surroundings) -> String {
+    let home = tempfile::Builder::new().prefix("monado-").tempdir().unwrap();
+    let service = surroundings.with_service.then(|| Service::start(prefix, &home));
+    let mut command = by_own_loader(prefix, &home, &std::env::current_exe().unwrap());
+    command.args([test, "--exact", "--nocapture", "--test-threads=1"]).env(INSIDE, "1");
+    if let Some(service) = &service {
+        command.env(PORT, service.port.to_string()).env(SERVICE, service.process.to_string());
+    }
+    command.envs(surroundings.environment);
+    let output = command.stdin(Stdio::null()).output().unwrap();
+    let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
+    let log = std::fs::read_to_string(home.path().join("service.log")).unwrap_or_default();
+    assert!(
+        output.status.success() && out.contains("1 passed"),
+        "{test}: {}\n{out}\n{err}\n-- service --\n{log}",
+        output.status
+    );
+    format!("{out}\n{err}")
+}
+
+/// A program under the dynamic loader and with the libraries of a prefix.
+fn by_own_loader(prefix: &Path, home: &TempDir, program: &Path) -> Command {
+    let libraries = std::fs::read_to_string(prefix.join("library-path")).unwrap();
+    let mut command = Command::new(prefix.join("loader"));
+    command
+        .args(["--library-path", libraries.trim()])
+        .arg(program)
+        .env("HOME", home.path())
+        .env("XDG_RUNTIME_DIR", home.path())
+        .env("XDG_CONFIG_HOME", home.path())
+        .env("XR_RUNTIME_JSON", prefix.join("runtime.json"))
+        .env("VK_DRIVER_FILES", prefix.join("vulkan.json"))
+        .env("VK_LAYER_PATH", prefix.join("layers"));
+    command
+}
+
+/// A service of its own for each test.
+struct Service {
+    keeper: Child,
+    process: u32,
+    port: u16,
+}
+
+impl Service {
+    fn start(prefix: &Path, home: &TempDir) -> Self {
+        let port = TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port();
+        let settings = home.path().join("monado");
+        std::fs::create_dir(&settings).unwrap();
+        let remote = format!(r#"{{"active": "remote", "remote": {{"version": 0, "port": {port}}}}}"#);
+        std::fs::write(settings.join("config_v0.json"), remote).unwrap();
+        let log = std::fs::File::create(home.path().join("service.log")).unwrap();
+        let service = by_own_loader(prefix, home, &prefix.join("root/usr/bin/monado-service"));
+        let mut command = Command::new("sh");
+        command.args(["-c", KEEPER, "sh"]).arg(service.get_program()).args(service.get_args());
+        command.envs(service.get_envs().filter_map(|(name, value)| Some((name, value?))));
+        let mut keeper = command
+            .env("XRT_NO_STDIN", "1")
+            .env("XRT_COMPOSITOR_NULL", "1")
+            .env("P_OVERRIDE_ACTIVE_CONFIG", "remote")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(log)
+            .spawn()
+            .unwrap();
+        let mut process = String::new();
+        let mut said = BufReader::new(keeper.stdout.take().unwrap());
+        said.read_line(&mut process).unwrap();
+        let mut service = Self { keeper, process: process.trim().parse().unwrap(), port };
+        while !home.path().join("monado_comp_ipc").exists() {
+            let ended = service.keeper.try_wait().unwrap();
+            let log = || std::fs::read_to_string(home.path().join("service.log")).unwrap_or_default();
+            assert!(ended.is_none(), "the service ended: {}", log());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        service
+    }
+}
+
+impl Drop for Service {
+    fn drop(&mut self) {
+        drop(self.keeper.stdin.take());
+        self.keeper.wait().unwrap();
+    }
+}
