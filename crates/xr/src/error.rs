@@ -95,15 +95,20 @@ pub(crate) trait Called<T> {
 
 impl<T> Called<T> for xr::Result<T> {
     fn called(self, call: &'static str) -> Result<T, XrError> {
-        self.map_err(|error| {
-            let reason = format!("{error:?}");
-            match error {
-                xr::sys::Result::ERROR_INSTANCE_LOST | xr::sys::Result::ERROR_SESSION_LOST => {
-                    XrError::RuntimeLost { call, reason }
-                }
-                _ => XrError::Refused { call, reason },
+        self.map_err(|error| XrError::of(call, error))
+    }
+}
+
+impl XrError {
+    /// What an error of a call tells.
+    pub(crate) fn of(call: &'static str, error: xr::sys::Result) -> Self {
+        let reason = format!("{error:?}");
+        match error {
+            xr::sys::Result::ERROR_INSTANCE_LOST | xr::sys::Result::ERROR_SESSION_LOST => {
+                Self::RuntimeLost { call, reason }
             }
-        })
+            _ => Self::Refused { call, reason },
+        }
     }
 }
 
@@ -125,7 +130,7 @@ mod tests {
 
     #[test]
     fn lost_runtimes_are_told_from_refused_calls() {
-        let told = |error: xr::sys::Result| Err::<(), _>(error).called("xrEndFrame").unwrap_err();
+        let told = |error| XrError::of("xrEndFrame", error);
         for lost in [xr::sys::Result::ERROR_INSTANCE_LOST, xr::sys::Result::ERROR_SESSION_LOST] {
             assert!(matches!(told(lost), XrError::RuntimeLost { call: "xrEndFrame", .. }), "{lost:?}");
         }

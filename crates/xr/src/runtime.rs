@@ -2,6 +2,7 @@
 
 use crate::error::{Called, XrError};
 use openxr as xr;
+use std::error::Error as _;
 use std::path::Path;
 
 /// The two eyes' views.
@@ -45,7 +46,8 @@ pub struct RuntimeDescription {
 }
 
 impl Runtime {
-    /// Connects to the active runtime in the name of a program (of 127 bytes at most, the rest is left out).
+    /// Connects to the active runtime in the name of a program (of 127 bytes at most, the rest is left out). Most loaders let a program
+    /// have one connection at a time.
     ///
     /// # Errors
     /// [`XrError::NoLoader`], [`XrError::NoRuntime`], [`XrError::NoHeadset`], [`XrError::NoStereo`] or [`XrError::MissingExtension`],
@@ -57,11 +59,15 @@ impl Runtime {
     fn connect_through(loader: &Path, program: &str) -> Result<Self, XrError> {
         // SAFETY: a library of the loader's name is the loader, which keeps to the specification.
         let entry = unsafe { xr::Entry::load_from(loader, &()) }.map_err(|error| match error {
-            xr::EntryError::Load(reason) => XrError::NoLoader { reason: reason.to_string() },
+            xr::EntryError::Load(error) => {
+                let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+                XrError::NoLoader { reason }
+            }
             xr::EntryError::Xr(error) => XrError::NoLoader { reason: format!("{error:?}") },
         })?;
-        let no_runtime = |error: xr::sys::Result| XrError::NoRuntime { reason: format!("{error:?}") };
-        let offered = entry.enumerate_extensions().map_err(no_runtime)?;
+        let offered = entry
+            .enumerate_extensions()
+            .map_err(|error| no_runtime("xrEnumerateInstanceExtensionProperties", error))?;
         if !offered.khr_vulkan_enable2 {
             return Err(XrError::MissingExtension {
                 runtime: "the active OpenXR runtime".to_owned(),
@@ -74,8 +80,9 @@ impl Runtime {
             api_version: xr::Version::new(1, 0, 0),
             ..Default::default()
         };
-        let instance =
-            entry.create_instance(&application, &wanted(&offered), &[], &()).map_err(no_runtime)?;
+        let instance = entry
+            .create_instance(&application, &wanted(&offered), &[], &())
+            .map_err(|error| no_runtime("xrCreateInstance", error))?;
         let name = instance.properties().called("xrGetInstanceProperties")?;
         let system = instance
             .system(xr::FormFactor::HEAD_MOUNTED_DISPLAY)
@@ -111,12 +118,22 @@ fn wanted(offered: &xr::ExtensionSet) -> xr::ExtensionSet {
     wanted
 }
 
+fn no_runtime(call: &'static str, error: xr::sys::Result) -> XrError {
+    use xr::sys::Result as R;
+    match error {
+        R::ERROR_RUNTIME_UNAVAILABLE | R::ERROR_RUNTIME_FAILURE | R::ERROR_INITIALIZATION_FAILED => {
+            XrError::NoRuntime { reason: format!("{error:?}") }
+        }
+        other => XrError::of(call, other),
+    }
+}
+
 fn no_headset(runtime: &str, error: xr::sys::Result) -> XrError {
     match error {
         xr::sys::Result::ERROR_FORM_FACTOR_UNAVAILABLE | xr::sys::Result::ERROR_FORM_FACTOR_UNSUPPORTED => {
             XrError::NoHeadset { runtime: runtime.to_owned(), reason: format!("{error:?}") }
         }
-        other => Err::<(), _>(other).called("xrGetSystem").expect_err("it is an error"),
+        other => XrError::of("xrGetSystem", other),
     }
 }
 
@@ -182,6 +199,14 @@ mod tests {
         }
         let lost = no_headset("Monado", xr::sys::Result::ERROR_INSTANCE_LOST);
         assert!(matches!(lost, XrError::RuntimeLost { .. }), "{lost:?}");
+    }
+
+    #[test]
+    fn a_second_connection_is_no_missing_runtime() {
+        let told = no_runtime("xrCreateInstance", xr::sys::Result::ERROR_LIMIT_REACHED);
+        assert!(matches!(told, XrError::Refused { call: "xrCreateInstance", .. }), "{told:?}");
+        let missing = no_runtime("xrCreateInstance", xr::sys::Result::ERROR_RUNTIME_UNAVAILABLE);
+        assert!(matches!(missing, XrError::NoRuntime { .. }), "{missing:?}");
     }
 
     #[test]

@@ -4,9 +4,10 @@
 //! itself once more, both by the dynamic loader that belongs to them; what it is to show happens in that second process.
 
 use crate::remote::Remote;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpListener;
+use std::os::unix::ffi::OsStrExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
@@ -21,9 +22,12 @@ const SKIPPED: &str = "WHEATSTONE_SKIP_XR_TESTS";
 const INSIDE: &str = "WHEATSTONE_XR_INSIDE";
 const PORT: &str = "WHEATSTONE_XR_PORT";
 const SERVICE: &str = "WHEATSTONE_XR_SERVICE";
+/// Set in a further process.
+const SECOND: &str = "WHEATSTONE_XR_SECOND";
 
 /// Runs the service, and ends it when it is told to or when whoever started it is gone: then its standard input ends.
-const KEEPER: &str = r#"exec 3<&0; "$@" </dev/null & pid=$!; echo $pid; (read -r _ <&3; kill -9 $pid) & wait $pid"#;
+const KEEPER: &str =
+    r#"exec 3<&0; "$@" </dev/null & pid=$!; echo $pid; (read -r _ <&3; kill -9 $pid) & wait $pid"#;
 
 /// One after the other: they share two cores with the compositor.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -52,6 +56,24 @@ impl Monado {
     /// Devices that the test moves.
     pub(crate) fn remote(&self) -> Remote {
         Remote::connect(self.port)
+    }
+
+    /// Starts the test's body once more, as another program.
+    pub(crate) fn second(&self) -> Child {
+        let own = std::fs::read("/proc/self/cmdline").unwrap();
+        let mut words = own.split(|byte| *byte == 0).map(OsStr::from_bytes).filter(|word| !word.is_empty());
+        Command::new(words.next().unwrap())
+            .args(words)
+            .env(SECOND, "1")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap()
+    }
+
+    /// Whether this is that other program.
+    pub(crate) fn is_second(&self) -> bool {
+        std::env::var_os(SECOND).is_some()
     }
 
     /// Ends the service as a crash would.
@@ -158,8 +180,9 @@ impl Service {
         let port = TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port();
         let settings = home.path().join("monado");
         std::fs::create_dir(&settings).unwrap();
-        let remote = format!(r#"{{"active": "remote", "remote": {{"version": 0, "port": {port}}}}}"#);
-        std::fs::write(settings.join("config_v0.json"), remote).unwrap();
+        let remote = format!(r#"{{"version": 0, "port": {port}, "view_count": 2}}"#);
+        let active = format!(r#"{{"active": "remote", "remote": {remote}}}"#);
+        std::fs::write(settings.join("config_v0.json"), active).unwrap();
         let log = std::fs::File::create(home.path().join("service.log")).unwrap();
         let service = by_own_loader(prefix, home, &prefix.join("root/usr/bin/monado-service"));
         let mut command = Command::new("sh");
