@@ -70,3 +70,35 @@ fn a_hand_without_a_controller_has_no_pose_and_nothing_pressed() {
         assert_eq!(tick.hands[1].squeeze, 1.0);
     });
 }
+
+#[test]
+fn bare_hands_squeeze_by_pinching() {
+    inside(bare_hands_squeeze_by_pinching, |monado| {
+        let mut remote = monado.remote();
+        let (graphics, mut session) = begin(SessionOptions::default());
+        let mut squeezes = Vec::new();
+        for bent in [0.0_f32, 0.5, 1.0, 0.25] {
+            let fingers = [0.0, 0.0, 0.0, bent, bent];
+            let place = pose(-0.25 - f64::from(bent), 0.6);
+            let bare = Controller {
+                active: false,
+                hand_seen: true,
+                curl: fingers,
+                trigger: 1.0,
+                ..Controller::at(place)
+            };
+            remote.controller(Side::Left, &bare).controller(Side::Right, &bare).send();
+            let is_there = |hand: &Hand| {
+                hand.grip.is_some_and(|grip| grip.distance_to_m(&place) < 0.15)
+                    && hand.aim.is_some_and(|aim| aim.angle_to_rad(&place) < 1e-4)
+            };
+            let tick = until(&graphics, &mut session, "the bare hand", |_, tick| is_there(&tick.hands[0]));
+            let hand = tick.hands[0];
+            assert_eq!((hand.trigger, hand.stick, hand.menu), (0.0, [0.0; 2], false));
+            squeezes.push(hand.squeeze);
+        }
+        let [open, half, closed, quarter] = squeezes[..] else { unreachable!() };
+        assert_eq!((open, closed), (0.0, 1.0));
+        assert!(quarter < half && half > 0.1 && half < 0.9, "{squeezes:?}");
+    });
+}

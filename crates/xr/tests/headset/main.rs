@@ -7,6 +7,7 @@
 
 mod monado;
 mod remote;
+mod screenshot;
 mod support;
 
 mod endings;
@@ -15,3 +16,4 @@ mod focus;
 mod frames;
 mod hands;
 mod missing;
+mod screen;

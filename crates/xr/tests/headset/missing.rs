@@ -1,6 +1,6 @@
 //! What is told when something is missing.
 
-use crate::monado::{Surroundings, inside_with};
+use crate::monado::{Compositor, Surroundings, inside_with};
 use wheatstone_xr::{Runtime, XrError};
 
 fn without_runtime() -> String {
@@ -11,7 +11,7 @@ fn without_runtime() -> String {
 
 #[test]
 fn a_runtime_that_does_not_run_is_told() {
-    let nothing_runs = Surroundings { with_service: false, ..Default::default() };
+    let nothing_runs = Surroundings { compositor: Compositor::None, ..Default::default() };
     inside_with(a_runtime_that_does_not_run_is_told, nothing_runs, |_| {
         assert!(without_runtime().contains("start the headset's software"));
     });
@@ -20,7 +20,7 @@ fn a_runtime_that_does_not_run_is_told() {
 #[test]
 fn a_runtime_that_is_not_set_up_is_told() {
     let environment = vec![("XR_RUNTIME_JSON", "/nowhere/runtime.json".into())];
-    let nothing_set_up = Surroundings { with_service: false, environment };
+    let nothing_set_up = Surroundings { compositor: Compositor::None, environment };
     inside_with(a_runtime_that_is_not_set_up_is_told, nothing_set_up, |_| {
         assert!(without_runtime().contains("XR_RUNTIME_JSON"));
     });

@@ -4,12 +4,14 @@
 //! itself once more, both by the dynamic loader that belongs to them; what it is to show happens in that second process.
 
 use crate::remote::Remote;
+use crate::screenshot::Screenshot;
 use std::ffi::{OsStr, OsString};
+use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpListener;
 use std::os::unix::ffi::OsStrExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use tempfile::TempDir;
@@ -22,27 +24,41 @@ const SKIPPED: &str = "WHEATSTONE_SKIP_XR_TESTS";
 const INSIDE: &str = "WHEATSTONE_XR_INSIDE";
 const PORT: &str = "WHEATSTONE_XR_PORT";
 const SERVICE: &str = "WHEATSTONE_XR_SERVICE";
+/// Where a program's complaints go.
+const LOG: &str = "WHEATSTONE_XR_LOG";
 /// Set in a further process.
 const SECOND: &str = "WHEATSTONE_XR_SECOND";
+/// What is on the display.
+const SCREEN: &str = "WHEATSTONE_XR_SCREEN";
 
-/// Runs the service, and ends it when it is told to or when whoever started it is gone: then its standard input ends.
+/// Runs a program, and ends it when it is told to or when whoever started it is gone: then its standard input ends.
 const KEEPER: &str =
     r#"exec 3<&0; "$@" </dev/null & pid=$!; echo $pid; (read -r _ <&3; kill -9 $pid) & wait $pid"#;
 
 /// One after the other: they share two cores with the compositor.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
+/// What the service does with pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Compositor {
+    /// There is no service.
+    None,
+    /// It takes them and shows nothing.
+    Null,
+    /// It shows them on a display without a screen.
+    Screen,
+}
+
 /// What a test runs in.
 pub(crate) struct Surroundings {
-    /// Whether the service runs.
-    pub(crate) with_service: bool,
+    pub(crate) compositor: Compositor,
     /// Further environment of the second process.
     pub(crate) environment: Vec<(&'static str, OsString)>,
 }
 
 impl Default for Surroundings {
     fn default() -> Self {
-        Self { with_service: true, environment: Vec::new() }
+        Self { compositor: Compositor::Null, environment: Vec::new() }
     }
 }
 
@@ -56,6 +72,11 @@ impl Monado {
     /// Devices that the test moves.
     pub(crate) fn remote(&self) -> Remote {
         Remote::connect(self.port)
+    }
+
+    /// What is on the display.
+    pub(crate) fn screen(&self) -> Screenshot {
+        Screenshot::of(&std::fs::read(std::env::var_os(SCREEN).unwrap()).unwrap())
     }
 
     /// Starts the test's body once more, as another program.
@@ -134,11 +155,16 @@ fn prefix() -> Result<PathBuf, String> {
 
 fn run(prefix: &Path, test: &str, surroundings: Surroundings) -> String {
     let home = tempfile::Builder::new().prefix("monado-").tempdir().unwrap();
-    let service = surroundings.with_service.then(|| Service::start(prefix, &home));
+    let display = (surroundings.compositor == Compositor::Screen).then(|| Display::start(&home));
+    let service = (surroundings.compositor != Compositor::None)
+        .then(|| Service::start(prefix, &home, display.as_ref()));
     let mut command = by_own_loader(prefix, &home, &std::env::current_exe().unwrap());
     command.args([test, "--exact", "--nocapture", "--test-threads=1"]).env(INSIDE, "1");
     if let Some(service) = &service {
-        command.env(PORT, service.port.to_string()).env(SERVICE, service.process.to_string());
+        command.env(PORT, service.port.to_string()).env(SERVICE, service.kept.process.to_string());
+    }
+    if let Some(display) = &display {
+        command.env(SCREEN, &display.screen);
     }
     command.envs(surroundings.environment);
     let output = command.stdin(Stdio::null()).output().unwrap();
@@ -168,52 +194,93 @@ fn by_own_loader(prefix: &Path, home: &TempDir, program: &Path) -> Command {
     command
 }
 
+/// A program that ends with this.
+struct Kept {
+    keeper: Child,
+    /// Its process.
+    process: u32,
+    /// What it says.
+    said: BufReader<ChildStdout>,
+}
+
+impl Kept {
+    fn start(program: &Command) -> Self {
+        let mut command = Command::new("sh");
+        command.args(["-c", KEEPER, "sh"]).arg(program.get_program()).args(program.get_args());
+        command.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        if let Some(log) = program.get_envs().find_map(|(name, value)| value.filter(|_| name == LOG)) {
+            command.stderr(File::create(log).unwrap());
+        }
+        let mut keeper = command.spawn().unwrap();
+        let said = BufReader::new(keeper.stdout.take().unwrap());
+        let mut kept = Self { keeper, process: 0, said };
+        kept.process = kept.line().parse().unwrap();
+        kept
+    }
+
+    fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.said.read_line(&mut line).unwrap();
+        line.trim().to_owned()
+    }
+}
+
+impl Drop for Kept {
+    fn drop(&mut self) {
+        drop(self.keeper.stdin.take());
+        self.keeper.wait().unwrap();
+    }
+}
+
 /// A service of its own for each test.
 struct Service {
-    keeper: Child,
-    process: u32,
+    kept: Kept,
     port: u16,
 }
 
 impl Service {
-    fn start(prefix: &Path, home: &TempDir) -> Self {
+    fn start(prefix: &Path, home: &TempDir, display: Option<&Display>) -> Self {
         let port = TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port();
         let settings = home.path().join("monado");
         std::fs::create_dir(&settings).unwrap();
         let remote = format!(r#"{{"version": 0, "port": {port}, "view_count": 2}}"#);
         let active = format!(r#"{{"active": "remote", "remote": {remote}}}"#);
         std::fs::write(settings.join("config_v0.json"), active).unwrap();
-        let log = std::fs::File::create(home.path().join("service.log")).unwrap();
-        let service = by_own_loader(prefix, home, &prefix.join("root/usr/bin/monado-service"));
-        let mut command = Command::new("sh");
-        command.args(["-c", KEEPER, "sh"]).arg(service.get_program()).args(service.get_args());
-        command.envs(service.get_envs().filter_map(|(name, value)| Some((name, value?))));
-        let mut keeper = command
-            .env("XRT_NO_STDIN", "1")
-            .env("XRT_COMPOSITOR_NULL", "1")
-            .env("P_OVERRIDE_ACTIVE_CONFIG", "remote")
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(log)
-            .spawn()
-            .unwrap();
-        let mut process = String::new();
-        let mut said = BufReader::new(keeper.stdout.take().unwrap());
-        said.read_line(&mut process).unwrap();
-        let mut service = Self { keeper, process: process.trim().parse().unwrap(), port };
+        let log = home.path().join("service.log");
+        let mut service = by_own_loader(prefix, home, &prefix.join("root/usr/bin/monado-service"));
+        service.env(LOG, &log).env("XRT_NO_STDIN", "1").env("P_OVERRIDE_ACTIVE_CONFIG", "remote");
+        match display {
+            Some(display) => service.env("XRT_COMPOSITOR_FORCE_XCB", "1").env("DISPLAY", &display.name),
+            None => service.env("XRT_COMPOSITOR_NULL", "1"),
+        };
+        let mut kept = Kept::start(&service);
         while !home.path().join("monado_comp_ipc").exists() {
-            let ended = service.keeper.try_wait().unwrap();
-            let log = || std::fs::read_to_string(home.path().join("service.log")).unwrap_or_default();
+            let ended = kept.keeper.try_wait().unwrap();
+            let log = || std::fs::read_to_string(&log).unwrap_or_default();
             assert!(ended.is_none(), "the service ended: {}", log());
             std::thread::sleep(Duration::from_millis(10));
         }
-        service
+        Self { kept, port }
     }
 }
 
-impl Drop for Service {
-    fn drop(&mut self) {
-        drop(self.keeper.stdin.take());
-        self.keeper.wait().unwrap();
+/// A display without a screen, as large as the window that the service makes for its devices.
+struct Display {
+    /// Ends with this.
+    _kept: Kept,
+    name: String,
+    /// The file that holds what is on it.
+    screen: PathBuf,
+}
+
+impl Display {
+    fn start(home: &TempDir) -> Self {
+        let mut server = Command::new("Xvfb");
+        server.args(["-displayfd", "1", "-screen", "0", "960x540x24", "-nolisten", "tcp", "-fbdir"]);
+        server.arg(home.path()).env(LOG, home.path().join("display.log"));
+        let mut kept = Kept::start(&server);
+        let name = format!(":{}", kept.line());
+        Self { _kept: kept, name, screen: home.path().join("Xvfb_screen0") }
     }
 }
