@@ -42,8 +42,13 @@ candidate() {
     apt-cache "${private[@]}" policy libopenxr1-monado 2>/dev/null | awk '/Candidate:/ { print $2 }'
 }
 
+fetch_lists() {
+    # apt only warns of what it cannot fetch.
+    apt-get "${private[@]}" -qq update >&2 && [ -n "$(find "$aside/apt/state/lists" -name '*Packages*' -print -quit)" ]
+}
+
 echo "setting Monado up in $folder" >&2
-apt-get "${private[@]}" -qq update >&2 || cannot "the lists of packages cannot be fetched"
+fetch_lists || cannot "the lists of packages cannot be fetched"
 if ! dpkg --compare-versions "$(candidate)" ge "$oldest_monado" 2>/dev/null; then
     # The release is too old. Debian's releases are on the same mirror.
     mirror=$(apt-get "${private[@]}" indextargets --format '$(ORIGIN) $(LABEL) $(REPO_URI)' 'Created-By: Packages' |
@@ -52,7 +57,7 @@ if ! dpkg --compare-versions "$(candidate)" ge "$oldest_monado" 2>/dev/null; the
     keys=/usr/share/keyrings/debian-archive-keyring.gpg
     echo "deb [signed-by=$keys] $mirror trixie main" >"$aside/apt/sources.list"
     private+=(-o "Dir::Etc::sourcelist=$aside/apt/sources.list" -o Dir::Etc::sourceparts=-)
-    apt-get "${private[@]}" -qq update >&2 || cannot "the lists of packages of Debian 13 cannot be fetched"
+    fetch_lists || cannot "the lists of packages of Debian 13 cannot be fetched"
     dpkg --compare-versions "$(candidate)" ge "$oldest_monado" 2>/dev/null || cannot "no Monado $oldest_monado in Debian 13's packages"
 fi
 apt-get "${private[@]}" -qq -y --no-install-recommends --download-only install "${packages[@]}" >&2 ||

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs every test. Installs software Vulkan (Mesa's lavapipe) first where no GPU adapter is found, and an X server without a
-# screen with the libraries of windows where there is none.
+# screen with the libraries of windows where there is none. Sets Monado up for the tests of the headset.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -53,5 +53,18 @@ fi
 if [ -z "${WHEATSTONE_SKIP_GPU_TESTS:-}" ] && [ "$(uname)" = Linux ] && ! has_display; then
     echo "no Xvfb found: installing it" >&2
     install_display
+fi
+if [ -z "${WHEATSTONE_MONADO:-}${WHEATSTONE_SKIP_XR_TESTS:-}" ] && [ "$(uname)" = Linux ]; then
+    status=0
+    WHEATSTONE_MONADO=$(bash scripts/monado.sh) || status=$?
+    case $status in
+    0) export WHEATSTONE_MONADO ;;
+    3)
+        unset WHEATSTONE_MONADO
+        export WHEATSTONE_SKIP_XR_TESTS="no packages of Monado"
+        echo "THE TESTS OF THE HEADSET ARE SKIPPED: $WHEATSTONE_SKIP_XR_TESTS" >&2
+        ;;
+    *) exit "$status" ;;
+    esac
 fi
 cargo test --workspace "$@"

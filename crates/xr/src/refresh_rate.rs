@@ -12,7 +12,7 @@ impl Session {
         if !self.has_refresh_rates() {
             return Ok(Vec::new());
         }
-        self.handle().enumerate_display_refresh_rates().called("xrEnumerateDisplayRefreshRatesFB")
+        self.handle.enumerate_display_refresh_rates().called("xrEnumerateDisplayRefreshRatesFB")
     }
 
     /// How often the display refreshes, per second; none where that is told by [`Tick::period_s`](wheatstone_core::headset::Tick) alone.
@@ -23,7 +23,7 @@ impl Session {
         if !self.has_refresh_rates() {
             return Ok(None);
         }
-        let hz = self.handle().get_display_refresh_rate().called("xrGetDisplayRefreshRateFB")?;
+        let hz = self.handle.get_display_refresh_rate().called("xrGetDisplayRefreshRateFB")?;
         // 0 stands for not known.
         Ok((hz > 0.0).then_some(hz))
     }
@@ -39,6 +39,6 @@ impl Session {
             let reason = "the runtime does not let it be chosen".to_owned();
             return Err(XrError::Refused { call, reason });
         }
-        self.handle().request_display_refresh_rate(hz).called(call)
+        self.handle.request_display_refresh_rate(hz).called(call)
     }
 }

@@ -312,10 +312,6 @@ impl Session {
         images.iter_mut().try_for_each(|image| image.release())
     }
 
-    pub(crate) fn handle(&self) -> &xr::Session<xr::Vulkan> {
-        &self.handle
-    }
-
     pub(crate) fn has_visibility_masks(&self) -> bool {
         self.runtime.description().has_visibility_masks
     }

@@ -37,7 +37,7 @@ impl Session {
             return Ok(None);
         };
         let mask = self
-            .handle()
+            .handle
             .get_visibility_mask_khr(STEREO, eye, xr::VisibilityMaskTypeKHR::HIDDEN_TRIANGLE_MESH)
             .called("xrGetVisibilityMaskKHR")?;
         Ok(HiddenArea::new(&mask))

@@ -121,10 +121,9 @@ impl Gpu {
     ) -> Result<Self, GpuError> {
         let found = candidates.len();
         let adapter = candidates.into_iter().find(accept).ok_or(GpuError::NoAdapter { found })?;
-        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
-            .map_err(|error| GpuError::Device {
-                adapter: adapter.get_info().name,
-                reason: error.to_string(),
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&device_descriptor(&adapter))).map_err(|error| {
+                GpuError::Device { adapter: adapter.get_info().name, reason: error.to_string() }
             })?;
         Ok(Self::adopt(adapter, device, queue))
     }

@@ -280,7 +280,9 @@ impl Display {
         server.args(["-displayfd", "1", "-screen", "0", "960x540x24", "-nolisten", "tcp", "-fbdir"]);
         server.arg(home.path()).env(LOG, home.path().join("display.log"));
         let mut kept = Kept::start(&server);
-        let name = format!(":{}", kept.line());
+        let number = kept.line();
+        assert!(!number.is_empty(), "Xvfb gives no display: is it installed?");
+        let name = format!(":{number}");
         Self { _kept: kept, name, screen: home.path().join("Xvfb_screen0") }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) fn begin(options: SessionOptions) -> (Graphics, Session) {
 
 /// Polls until there are frames to make.
 pub(crate) fn until_running(session: &mut Session) {
-    for _ in 0..PATIENCE {
+    for _ in 0..1000 {
         match session.poll().unwrap() {
             Phase::Running => return,
             Phase::Idle => std::thread::sleep(Duration::from_millis(10)),
@@ -27,7 +27,7 @@ pub(crate) fn until_running(session: &mut Session) {
     panic!("the session never began");
 }
 
-/// Makes a frame with a colour for each eye. Returns its tick, and whether there was anything to draw to.
+/// Makes a frame with a colour for each eye, if there are eyes. Returns its tick.
 pub(crate) fn make_frame(graphics: &Graphics, session: &mut Session, colors: [wgpu::Color; 2]) -> Tick {
     until_running(session);
     let mut frame = session.wait().unwrap();
