@@ -10,6 +10,7 @@ use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpListener;
 use std::os::unix::ffi::OsStrExt as _;
+use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
@@ -255,7 +256,7 @@ impl Service {
             None => service.env("XRT_COMPOSITOR_NULL", "1"),
         };
         let mut kept = Kept::start(&service);
-        while !home.path().join("monado_comp_ipc").exists() {
+        while UnixStream::connect(home.path().join("monado_comp_ipc")).is_err() {
             let ended = kept.keeper.try_wait().unwrap();
             let log = || std::fs::read_to_string(&log).unwrap_or_default();
             assert!(ended.is_none(), "the service ended: {}", log());
