@@ -22,6 +22,7 @@ mod spec;
 mod transfer_spec;
 mod viewer;
 mod volume_args;
+mod vr;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -52,6 +53,7 @@ enum Command {
     Demo(commands::demo::DemoArgs),
     Bench(commands::bench::BenchArgs),
     View(commands::view::ViewArgs),
+    Vr(commands::vr::VrArgs),
 }
 
 fn main() -> ExitCode {
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Command::Demo(args) => commands::demo::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
         Command::View(args) => commands::view::run(&args),
+        Command::Vr(args) => commands::vr::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

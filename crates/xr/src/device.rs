@@ -5,6 +5,7 @@ use crate::runtime::Runtime;
 use ash::vk::{self, Handle as _};
 use openxr as xr;
 use std::ffi::CStr;
+use std::sync::Arc;
 use wgpu::hal::{api::Vulkan, vulkan};
 use wheatstone_render::Gpu;
 use wheatstone_render::gpu::{device_descriptor, instance_flags};
@@ -16,14 +17,14 @@ const NEWEST_VULKAN: u32 = vk::API_VERSION_1_3;
 ///
 /// The runtime submits to the same queue, so all submissions have to come from the thread that the [`Session`](crate::Session) is on.
 pub struct Graphics {
-    gpu: Gpu,
+    gpu: Arc<Gpu>,
     instance: wgpu::Instance,
     runtime: Runtime,
 }
 
 impl Graphics {
     /// The device, for all that renders.
-    pub fn gpu(&self) -> &Gpu {
+    pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
     }
 
@@ -54,7 +55,7 @@ impl Runtime {
         // SAFETY: the device was opened from this adapter, with the features of this descriptor.
         let (device, queue) =
             unsafe { adapter.create_device_from_hal(opened, &descriptor) }.tried("taking the device over")?;
-        Ok(Graphics { gpu: Gpu::adopt(adapter, device, queue), instance, runtime: self.clone() })
+        Ok(Graphics { gpu: Arc::new(Gpu::adopt(adapter, device, queue)), instance, runtime: self.clone() })
     }
 
     fn vulkan_instance(&self, entry: &ash::Entry) -> Result<wgpu::Instance, XrError> {

@@ -1,6 +1,6 @@
 //! `bench`: what its commands share.
 
-use super::{bench_cast, bench_detail, bench_skip, bench_stereo, bench_warp};
+use super::{bench_cast, bench_detail, bench_skip, bench_stereo, bench_vr, bench_warp};
 use crate::backend::Engine;
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -24,6 +24,7 @@ use wheatstone_io::{Loaded, read_volume};
     wheatstone bench skip beetle:256 --frames 6 --plot plots\n  \
     wheatstone bench detail bonsai.nii.gz --up A --distances 1.2,5\n  \
     wheatstone bench stereo bonsai.nii.gz box:256 --up A --plot plots\n  \
+    wheatstone bench vr bonsai.nii.gz\n  \
     wheatstone bench warp bonsai.nii.gz --up A --plot plots")]
 pub(crate) struct BenchArgs {
     #[command(subcommand)]
@@ -36,6 +37,7 @@ enum BenchCommand {
     Detail(bench_detail::DetailArgs),
     Skip(bench_skip::SkipBenchArgs),
     Stereo(Box<bench_stereo::StereoBenchArgs>),
+    Vr(Box<bench_vr::VrBenchArgs>),
     Warp(Box<bench_warp::WarpBenchArgs>),
 }
 
@@ -46,6 +48,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         BenchCommand::Detail(args) => bench_detail::run(args),
         BenchCommand::Skip(args) => bench_skip::run(args),
         BenchCommand::Stereo(args) => bench_stereo::run(args),
+        BenchCommand::Vr(args) => bench_vr::run(args),
         BenchCommand::Warp(args) => bench_warp::run(args),
     }
 }

@@ -44,6 +44,7 @@ impl Canvas {
         gpu: &Gpu,
         surface: wgpu::Surface<'static>,
         [width, height]: [u32; 2],
+        present_mode: wgpu::PresentMode,
     ) -> Result<Self, Failure> {
         let mut config = surface
             .get_default_config(gpu.adapter(), width.max(1), height.max(1))
@@ -51,7 +52,7 @@ impl Canvas {
         let offered = surface.get_capabilities(gpu.adapter()).formats;
         let format = FORMATS.into_iter().find(|format| offered.contains(format));
         config.format = format.ok_or_else(|| anyhow!("the window takes none of the formats {FORMATS:?}"))?;
-        config.present_mode = wgpu::PresentMode::AutoVsync;
+        config.present_mode = present_mode;
         config.desired_maximum_frame_latency = 1;
         Ok(Self::Window { surface, config, is_configured: false })
     }

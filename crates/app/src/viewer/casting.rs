@@ -8,13 +8,14 @@ use std::sync::Arc;
 use std::time::Duration;
 use wheatstone_core::budget::QualityControl;
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::image::Image;
 use wheatstone_core::scene::Placement;
 use wheatstone_core::skip::Structure;
 use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_core::volume::Grid;
 use wheatstone_core::warp::LayerThresholds;
 use wheatstone_render::live::{Activity, Front, LiveError, LiveView};
-use wheatstone_render::{Gpu, GpuError, GpuVolume, LayersError, Leap, Prepared, Renderer, Sources};
+use wheatstone_render::{Gpu, GpuError, GpuVolume, LayersError, Leap, Prepared, Renderer, Sources, Target};
 
 /// Refreshes that a picture in motion takes at most.
 const REFRESHES_IN_MOTION: f64 = 4.0;
@@ -77,7 +78,7 @@ impl Casting {
         gpu: &Gpu,
         arrived: Arrived,
         state: &State,
-        size: [u32; 2],
+        aimed: Vec<View>,
     ) -> Result<(), Failure> {
         let Arrived { facts, volume, mut skipping } = arrived;
         let settings = Settings::of(state);
@@ -92,7 +93,6 @@ impl Casting {
             None => {
                 let control = QualityControl::new(REFRESHES_IN_MOTION, REST_AFTER_S);
                 let control = control.map_err(|error| live_failure(error.into()))?;
-                let aimed = views(state, size)?;
                 let live = LiveView::new(gpu, prepared, &aimed, Some(control)).map_err(live_failure)?;
                 (live, aimed, 0)
             }
@@ -103,12 +103,11 @@ impl Casting {
         Ok(())
     }
 
-    /// Aims at what a state shows in an area of some pixels. While settings change they get the skip map that is made quickly,
+    /// Aims at what some views see of what a state shows. While settings change they get the skip map that is made quickly,
     /// and when the eye moves next the one that lets rays leap furthest.
-    pub(crate) fn follow(&mut self, gpu: &Gpu, state: &State, size: [u32; 2]) -> Result<(), Failure> {
+    pub(crate) fn follow(&mut self, gpu: &Gpu, state: &State, aimed: Vec<View>) -> Result<(), Failure> {
         let Self { renderer, scene: Some(scene) } = self else { return Ok(()) };
         let settings = Settings::of(state);
-        let aimed = views(state, size)?;
         let (has_changed, has_moved) = (settings != scene.settings, aimed != scene.aimed);
         let structure = scene.skipping.as_ref().and_then(|skipping| {
             if has_changed { skipping.while_edited(&state.look) } else { skipping.at_rest(&state.look) }
@@ -151,9 +150,30 @@ impl Casting {
         Ok(())
     }
 
+    /// Casts a whole picture of what a state shows, whatever it takes.
+    pub(crate) fn render(&mut self, gpu: &Gpu, state: &State, view: View) -> Result<Image, Failure> {
+        let Self { renderer, scene: Some(scene) } = self else {
+            return Err(Failure::input("no volume is shown"));
+        };
+        let Scene { grid, volume, skipping, .. } = scene;
+        let structure = skipping.as_ref().and_then(|skipping| skipping.at_rest(&state.look));
+        let prepared = prepare(gpu, renderer, (grid, volume), skipping.as_mut(), structure, state)?;
+        let mut targets = [Target::new(gpu, view.size)?];
+        renderer.render(gpu, &prepared, &[view], &mut targets)?;
+        Ok(targets[0].read(gpu)?.image)
+    }
+
     /// The newest whole picture.
     pub(crate) fn front(&self) -> Option<&Front> {
         self.scene.as_ref().and_then(|scene| scene.live.front())
+    }
+
+    /// How fine the newest whole picture is, in words.
+    pub(crate) fn described_quality(&self) -> String {
+        let Some(front) = self.front() else { return "nothing cast yet".to_owned() };
+        let [width, height] = front.pictures().next().map_or([0; 2], |(target, _)| target.size());
+        let percent = 100.0 * front.quality().resolution();
+        format!("{width}×{height} pixels cast, {percent:.0} % of full resolution")
     }
 
     /// How many pictures have been complete so far: another number is another front.
@@ -177,8 +197,8 @@ pub(crate) fn seen(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> 
     Ok(state.stereo.views(&middle(state, size)?, state.camera.distance_m))
 }
 
-/// What is cast: a view for each eye, or one in the middle for both.
-fn views(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> {
+/// What is cast in an area of some pixels: a view for each eye, or one in the middle for both.
+pub(crate) fn views(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> {
     match state.stereo.method {
         EyeMethod::TwoCasts => seen(state, size),
         EyeMethod::OneCast => Ok(vec![middle(state, size)?]),

@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, Sheet, texture, write_texture};
 use super::capture::{Capture, Subject};
-use super::casting::{Casting, seen};
+use super::casting::{Casting, seen, views};
 use super::command::Command;
 use super::eyes::{Eyes, Wanted};
 use super::report::Report;
@@ -132,8 +132,10 @@ impl Viewer {
         let mut output = self.run_panels(input);
         let area = output.1;
         let size = canvas.size();
-        let pixels = area_in_pixels(area, output.0.pixels_per_point).within(size);
-        let followed = self.casting.follow(&self.gpu, self.session.state(), pixels.size());
+        let pixels = Area::of_points(area, output.0.pixels_per_point).within(size);
+        let state = self.session.state();
+        let followed =
+            views(state, pixels.size()).and_then(|aimed| self.casting.follow(&self.gpu, state, aimed));
         self.survive(followed)?;
         let mut panels = Panels::new(&self.context, &mut output.0, size);
         self.screen.update(&self.gpu, &mut panels);
@@ -184,7 +186,9 @@ impl Viewer {
     /// Shows a volume that has arrived, if it can be prepared.
     fn receive(&mut self, canvas: &Canvas) -> Result<(), Failure> {
         let Some((arrived, showing)) = self.session.step(&self.gpu) else { return Ok(()) };
-        match self.casting.receive(&self.gpu, *arrived, &showing.state, canvas.size()) {
+        let received = views(&showing.state, canvas.size())
+            .and_then(|aimed| self.casting.receive(&self.gpu, *arrived, &showing.state, aimed));
+        match received {
             Ok(()) => self.session.show(showing),
             Err(Failure::Gpu(error)) if is_end(&error) => return Err(error.into()),
             Err(failure) => self.session.refuse(&failure),
@@ -217,7 +221,7 @@ impl Viewer {
     fn run_panels(&mut self, input: RawInput) -> (egui::FullOutput, Rect) {
         let Self { session, casting, desk, timings, report, context, .. } = self;
         let notes = session.notes.latest().to_vec();
-        let quality = described_quality(casting);
+        let quality = casting.described_quality();
         let mut commands = Vec::new();
         let mut area = Rect::NOTHING;
         let output = context.run_ui(input, |ui| {
@@ -327,18 +331,4 @@ impl Viewer {
 /// Whether a device that says so is gone.
 fn is_end(error: &GpuError) -> bool {
     matches!(error, GpuError::Lost { .. } | GpuError::Hung { .. })
-}
-
-fn described_quality(casting: &Casting) -> String {
-    let Some(front) = casting.front() else { return "nothing cast yet".to_owned() };
-    let [width, height] = front.pictures().next().map_or([0; 2], |(target, _)| target.size());
-    let percent = 100.0 * front.quality().resolution();
-    format!("{width}×{height} pixels cast, {percent:.0} % of full resolution")
-}
-
-fn area_in_pixels(area: Rect, pixels_per_point: f32) -> Area {
-    let pixels = |points: f32| (points * pixels_per_point).round().max(0.0) as u32;
-    let (left, top) = (pixels(area.left()), pixels(area.top()));
-    let (right, bottom) = (pixels(area.right()), pixels(area.bottom()));
-    Area { left, top, width: right.saturating_sub(left), height: bottom.saturating_sub(top) }
 }

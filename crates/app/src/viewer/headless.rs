@@ -4,6 +4,7 @@ use super::Opening;
 use super::canvas::Canvas;
 use super::cycle::Viewer;
 use super::job::Waker;
+use super::loading::Uploads;
 use super::report::Report;
 use super::script::Player;
 use super::session::Session;
@@ -25,7 +26,7 @@ pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
     let has_news = Arc::new(AtomicBool::new(false));
     let news = Arc::clone(&has_news);
     let wake: Waker = Arc::new(move || news.store(true, Ordering::Release));
-    let session = Session::begin(source, wake)?;
+    let session = Session::begin(source, wake, Uploads::Beside)?;
     let gpu = Arc::new(Gpu::open_best()?);
     let mut canvas = Canvas::offscreen(&gpu, size)?;
     let mut viewer = Viewer::new(gpu, session, player, Context::default(), &canvas, begun)?;

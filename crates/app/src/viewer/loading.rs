@@ -68,6 +68,15 @@ pub(crate) enum Loading {
     Uploading(Job<Arrived>),
 }
 
+/// Which thread gives the device a volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Uploads {
+    /// One of its own.
+    Beside,
+    /// The one that goes on with the load, for devices that take work from one thread only.
+    InTurn,
+}
+
 /// How a load goes on.
 pub(crate) enum Step {
     UnderWay(Loading),
@@ -94,13 +103,14 @@ impl Loading {
         }
     }
 
-    /// Goes on as far as it can without waiting.
-    pub(crate) fn step(self, gpu: &Arc<Gpu>, wake: &Waker) -> Result<Step, Failure> {
+    /// Goes on as far as it can without waiting, but for an upload in turn.
+    pub(crate) fn step(self, gpu: &Arc<Gpu>, wake: &Waker, uploads: Uploads) -> Result<Step, Failure> {
         Ok(match self {
-            Self::Reading(mut job) => Step::UnderWay(match job.poll() {
-                Some(read) => Self::upload(read?, gpu, wake)?,
-                None => Self::Reading(job),
-            }),
+            Self::Reading(mut job) => match (job.poll(), uploads) {
+                (None, _) => Step::UnderWay(Self::Reading(job)),
+                (Some(read), Uploads::Beside) => Step::UnderWay(Self::upload(read?, gpu, wake)?),
+                (Some(read), Uploads::InTurn) => Step::Done(Box::new(upload(gpu, read?, &|_| ())?)),
+            },
             Self::Uploading(mut job) => match job.poll() {
                 Some(arrived) => Step::Done(Box::new(arrived?)),
                 None => Step::UnderWay(Self::Uploading(job)),

@@ -4,30 +4,30 @@
 //! [`casting`] follows the state, [`cycle::Viewer`] makes refreshes of it, on a window ([`window`]) or without one
 //! ([`headless`]).
 
-mod canvas;
+pub(crate) mod canvas;
 mod capture;
-mod casting;
-mod command;
+pub(crate) mod casting;
+pub(crate) mod command;
 mod cycle;
-mod eyes;
+pub(crate) mod eyes;
 mod facts;
 mod headless;
-mod job;
+pub(crate) mod job;
 mod latency;
-mod loading;
+pub(crate) mod loading;
 mod memory;
 mod notes;
 mod novel_views;
 mod report;
-mod screen;
+pub(crate) mod screen;
 mod script;
-mod session;
-mod show;
-mod state;
+pub(crate) mod session;
+pub(crate) mod show;
+pub(crate) mod state;
 mod text_file;
-mod timings;
-mod ui;
-mod window;
+pub(crate) mod timings;
+pub(crate) mod ui;
+pub(crate) mod window;
 
 pub(crate) use headless::run as run_headless;
 pub(crate) use loading::Source;

@@ -18,6 +18,14 @@ impl Area {
         Self { left: 0, top: 0, width, height }
     }
 
+    /// A rectangle in points.
+    pub(crate) fn of_points(rect: egui::Rect, pixels_per_point: f32) -> Self {
+        let pixels = |points: f32| (points * pixels_per_point).round().max(0.0) as u32;
+        let (left, top) = (pixels(rect.left()), pixels(rect.top()));
+        let (right, bottom) = (pixels(rect.right()), pixels(rect.bottom()));
+        Self { left, top, width: right.saturating_sub(left), height: bottom.saturating_sub(top) }
+    }
+
     /// Its width and height; at least one pixel each.
     pub(crate) fn size(self) -> [u32; 2] {
         [self.width.max(1), self.height.max(1)]

@@ -3,6 +3,7 @@
 use super::canvas::Canvas;
 use super::cycle::Viewer;
 use super::job::Waker;
+use super::loading::Uploads;
 use super::report::Report;
 use super::session::Session;
 use super::{Opening, Player};
@@ -28,7 +29,7 @@ pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
     let proxy = event_loop.create_proxy();
     let wake: Waker = Arc::new(move || drop(proxy.send_event(Wake)));
     let Opening { source, player, size, begun } = opening;
-    let session = Session::begin(source, wake)?;
+    let session = Session::begin(source, wake, Uploads::Beside)?;
     let mut app = App { stage: Stage::Before(Some(Box::new(Before { session, player, size, begun }))) };
     event_loop.run_app(&mut app).context("the window's event loop")?;
     match app.stage {
@@ -39,7 +40,7 @@ pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
 }
 
 /// The connection to the display. A library that is missing makes winit panic.
-fn event_loop() -> Result<EventLoop<Wake>, Failure> {
+pub(crate) fn event_loop<Event: 'static>() -> Result<EventLoop<Event>, Failure> {
     let built =
         panic::catch_unwind(|| EventLoop::with_user_event().build().map_err(|error| error.to_string()));
     let reason = match built {
@@ -91,7 +92,8 @@ impl Before {
         let instance = gpu::instance();
         let surface = instance.create_surface(Arc::clone(&window)).map_err(|_| no_adapter())?;
         let gpu = Arc::new(Gpu::open_for_surface(&instance, &surface)?);
-        let canvas = Canvas::of_window(&gpu, surface, window.inner_size().into())?;
+        let canvas =
+            Canvas::of_window(&gpu, surface, window.inner_size().into(), wgpu::PresentMode::AutoVsync)?;
         let context = Context::default();
         let largest_side = gpu.capabilities().largest_2d_side as usize;
         let input = egui_winit::State::new(

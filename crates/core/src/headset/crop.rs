@@ -91,6 +91,11 @@ impl Crop {
         Self { clip: Clip { plane, ..*clip } }
     }
 
+    /// The same for casters, with the plane in upright space.
+    pub(super) fn upright_clip(&self) -> Clip {
+        self.clip
+    }
+
     /// The same for casters, with the plane in world space.
     pub(super) fn clip(&self, stand: &Stand) -> Clip {
         let plane = self.clip.plane.map(|plane| {

@@ -144,6 +144,17 @@ impl Interaction {
         self.crop.clip(&self.stand)
     }
 
+    /// The same with the plane where it is in the volume's upright space, in which the longest side is 1 m.
+    pub fn upright_clip(&self) -> Clip {
+        self.crop.upright_clip()
+    }
+
+    /// Shows another part of the volume, which is told in its upright space; what is being dragged is let go.
+    pub fn show_upright(&mut self, clip: &Clip) {
+        self.crop = Crop::new(clip, &Stand::UPRIGHT);
+        self.drags.let_go();
+    }
+
     /// What each hand points at and would drag, or drags: something to be drawn.
     pub fn hovered(&self) -> [Option<Picked>; 2] {
         self.drags.picked(&self.stand)

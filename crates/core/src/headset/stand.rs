@@ -55,6 +55,10 @@ pub struct Stand {
 }
 
 impl Stand {
+    /// Upright space itself.
+    pub const UPRIGHT: Self =
+        Self { pose: Pose { position_m: DVec3::ZERO, orientation: DQuat::IDENTITY }, longest_side_m: 1.0 };
+
     /// Before somebody whose eyes are at a pose: the middle at arm's length, or as far as it takes for the front not to be
     /// uncomfortably near, 15° below the eyes, the patient facing them. Only the heading of the eyes counts: the volume is
     /// upright however the head is tilted.

@@ -53,7 +53,7 @@ impl Clip {
     }
 
     /// What the casters take.
-    pub(super) fn scene(&self) -> SceneClip {
+    pub(crate) fn scene(&self) -> SceneClip {
         SceneClip {
             box_lo: self.box_lo,
             box_hi: self.box_hi,

@@ -76,6 +76,8 @@ pub(crate) enum Edit {
         to: f64,
     },
     ClipPlane(Option<Plane>),
+    /// Box, plane and handles, all at once.
+    Clip(Clip),
     /// Whether the handles of box and plane are shown.
     ClipHandles(bool),
     /// Nothing is cut away any more.
@@ -120,6 +122,7 @@ impl Edit {
             Self::RemoveColorPoint(index) => transfer.remove_color(index),
             Self::MoveFace { face, to } => state.clip.move_face(face, to),
             Self::ClipPlane(plane) => state.clip.plane = plane,
+            Self::Clip(clip) => state.clip = clip,
             Self::ClipHandles(has_handles) => state.clip.has_handles = has_handles,
             Self::ResetClip => state.clip = Clip { has_handles: state.clip.has_handles, ..Clip::default() },
             Self::Arrangement(arrangement) => state.stereo.arrangement = arrangement,

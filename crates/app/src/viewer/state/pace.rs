@@ -1,6 +1,7 @@
 //! How time is spent.
 
 use super::within;
+use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 /// What a refresh has time for.
@@ -14,7 +15,7 @@ pub(crate) struct Pace {
 }
 
 /// How an old picture is shown from a new pose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum WarpName {
     /// As it is.

@@ -1,0 +1,219 @@
+//! `vr`: a volume in a headset.
+
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+use crate::progress::Bar;
+use crate::spec;
+use crate::transfer_spec;
+use crate::viewer::Source;
+use crate::viewer::command::Command;
+use crate::viewer::loading::{Arrived, Uploads};
+use crate::viewer::session::{Session, Showing};
+use crate::viewer::state::{Edit, WarpName};
+use crate::volume_args::RawArgs;
+use crate::vr::{
+    Beside, Connected, Guided, Mirror, OpenXr, Opening, Played, Record, Replay, Room, load, run as show,
+};
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use wheatstone_core::head::Display;
+use wheatstone_core::headset::{Demonstration, Recording, Scale, Stand};
+use wheatstone_render::Gpu;
+
+/// Width and height of the mirror window, points.
+const MIRROR: [u32; 2] = [960, 640];
+
+/// Width and height of each eye's picture without a headset, pixels.
+pub(super) const EYE: &str = "640x720";
+
+/// Show a volume in a headset: walk around it, take it in your hands, scale it, cut it.
+///
+/// An OpenXR runtime shows the pictures. The squeeze of one hand carries the volume, of both hands scales it; the trigger drags the face
+/// of the visible box or the clip plane that the hand points at; the thumb-stick goes through transfer functions (left, right) and shifts
+/// the window (up, down). What the volume costs does not matter: it is cast a few cells per refresh, and the newest whole picture is
+/// warped to where the eyes are.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    wheatstone vr\n  \
+    wheatstone vr head.nii.gz --tf ct-bone --life-size\n  \
+    wheatstone vr saved.json --floor --record session.jsonl\n  \
+    wheatstone vr head.nii.gz --replay session.jsonl --headset none --json")]
+pub(crate) struct VrArgs {
+    /// Volume or saved view (.json) [default: the brain that ships with Wheatstone].
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+
+    /// Transfer function at first: a preset's name, auto, a file.
+    #[arg(long, value_name = "SPEC", value_parser = checked_transfer)]
+    tf: Option<String>,
+
+    /// A millimetre of the patient is a millimetre; else the longest side is as long as what two hands hold.
+    #[arg(long)]
+    life_size: bool,
+
+    /// Show the floor and the horizon.
+    #[arg(long)]
+    floor: bool,
+
+    /// How the newest whole picture is brought to where the eyes are; a refresh that has no time for it takes a cheaper one.
+    #[arg(long, value_enum, default_value_t = WarpName::Volumetric)]
+    warp: WarpName,
+
+    /// What shows the pictures.
+    #[arg(long, value_enum, default_value_t = HeadsetName::Openxr)]
+    headset: HeadsetName,
+
+    /// Play eyes and hands of a recording.
+    #[arg(long, value_name = "FILE.jsonl")]
+    replay: Option<PathBuf>,
+
+    /// Record eyes and hands to a file.
+    #[arg(long, value_name = "FILE.jsonl")]
+    record: Option<PathBuf>,
+
+    /// Open no window beside the headset.
+    #[arg(long)]
+    no_mirror: bool,
+
+    /// End after so many refreshes.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    refreshes: Option<u64>,
+
+    /// Print what was measured as one JSON object when it ends.
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+/// What shows pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum HeadsetName {
+    /// The headset of the OpenXR runtime that the system has set up.
+    Openxr,
+    /// None: eyes and hands of a recording, or of a demonstration, at a simulated display of 90 Hz.
+    None,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
+    let source = Source { file: args.file.clone(), layout: args.raw.layout() };
+    let mut commands: Vec<Command> = vec![Edit::Warp(args.warp).into()];
+    commands.extend(args.tf.clone().map(Command::Preset));
+    let mut company = Company::default();
+    company.record = args.record.as_deref().map(Record::begin).transpose()?;
+    let recording = args.replay.as_deref().map(read_recording).transpose()?;
+    let scale = if args.life_size { Scale::True } else { Scale::Human };
+    let opening = |(session, arrived): (Session, _), stand| Opening {
+        session,
+        arrived,
+        commands,
+        scale,
+        stand,
+        has_floor: args.floor,
+        checks: None,
+        refreshes: args.refreshes,
+    };
+    let report = match args.headset {
+        HeadsetName::None => {
+            let gpu = Arc::new(Gpu::open_best()?);
+            let loaded = open(source, &gpu)?;
+            let (played, stand) = played(recording, &loaded.1);
+            let display = Display::default();
+            let size = spec::picture_size(EYE).map_err(Failure::input)?;
+            let mut headset = Replay::new(gpu, played, display, size)?;
+            show(&mut headset, opening(loaded, stand), &mut company)?
+        }
+        HeadsetName::Openxr => {
+            let connected = Connected::connect()?;
+            let loaded = open(source, connected.gpu())?;
+            if !args.no_mirror {
+                company.mirror = mirror(&connected);
+            }
+            let headset = OpenXr::begin(connected)?;
+            match recording.map(Played::Recording) {
+                Some(played) => show(&mut Guided::new(headset, played), opening(loaded, None), &mut company)?,
+                None => show(&mut { headset }, opening(loaded, None), &mut company)?,
+            }
+        }
+    };
+    if let Some(record) = company.record {
+        record.finish()?;
+    }
+    if args.json {
+        print_json(&report.to_json())?;
+    } else {
+        print(&report.to_lines())?;
+    }
+    Ok(())
+}
+
+/// A window beside the headset, if there is a display; what is in its way is told.
+fn mirror(connected: &Connected) -> Option<Mirror> {
+    match Mirror::open(Arc::clone(connected.gpu()), connected.instance().clone(), MIRROR) {
+        Ok(mirror) => Some(mirror),
+        Err(failure) => {
+            eprintln!("no window beside the headset: {failure}");
+            None
+        }
+    }
+}
+
+/// Reads and uploads what is to be shown at first, before a session begins that has no time for it.
+pub(super) fn open(source: Source, gpu: &Arc<Gpu>) -> Result<(Session, (Box<Arrived>, Showing)), Failure> {
+    let _spinner = Bar::spinner("reading the volume");
+    let mut session = Session::begin(source, Arc::new(|| ()), Uploads::InTurn)?;
+    let arrived = load(&mut session, gpu)?;
+    Ok((session, arrived))
+}
+
+/// A recording, or the demonstration with its own beginning.
+pub(super) fn played(
+    recording: Option<Recording>,
+    (arrived, showing): &(Box<Arrived>, Showing),
+) -> (Played, Option<Stand>) {
+    match recording {
+        Some(recording) => (Played::Recording(recording), None),
+        None => {
+            let up = showing.state.look.up.direction();
+            let demonstration = Demonstration::new(&arrived.facts.grid, up);
+            let stand = *demonstration.stand();
+            (Played::Demonstration(demonstration), Some(stand))
+        }
+    }
+}
+
+pub(super) fn read_recording(path: &Path) -> Result<Recording, Failure> {
+    let told = || format!("{}", path.display());
+    let file = File::open(path).with_context(told).map_err(Failure::Input)?;
+    Recording::read(BufReader::new(file)).with_context(told).map_err(Failure::Input)
+}
+
+pub(super) fn checked_transfer(text: &str) -> Result<String, String> {
+    transfer_spec::parse(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
+}
+
+/// A mirror and a recording, if they are wanted.
+#[derive(Default)]
+struct Company {
+    mirror: Option<Mirror>,
+    record: Option<Record>,
+}
+
+impl Beside for Company {
+    fn refreshed(&mut self, room: &mut Room) -> Result<(), Failure> {
+        if let Some(record) = &mut self.record {
+            record.refreshed(room)?;
+        }
+        self.mirror.as_mut().map_or(Ok(()), |mirror| mirror.refreshed(room))
+    }
+
+    fn has_quit(&self) -> bool {
+        self.mirror.as_ref().is_some_and(Mirror::has_quit)
+    }
+}

@@ -1,0 +1,98 @@
+//! How far what was shown is from what the eyes should have seen.
+
+use super::stage::{Scenery, Stage};
+use crate::failure::Failure;
+use crate::viewer::canvas;
+use crate::viewer::casting::Casting;
+use crate::viewer::state::State;
+use wheatstone_core::headset::Eye;
+use wheatstone_core::image::RgbImage;
+use wheatstone_core::metrics::compare;
+use wheatstone_core::view::View;
+use wheatstone_render::Gpu;
+
+/// How far the shown picture's eye may be from the eye for a refresh to count as still, metres of the volume's longest side.
+const STILL: f64 = 1e-6;
+
+/// One eye at one refresh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Checked {
+    pub(crate) dssim: f64,
+    /// Whether what was shown was cast from elsewhere.
+    pub(crate) moves: bool,
+}
+
+/// What was shown at some refreshes, kept on the device until the session is over.
+pub(crate) struct Checks {
+    stage: Stage,
+    /// Refreshes from one to the next.
+    every: u64,
+    refresh: u64,
+    kept: Vec<Kept>,
+    most: usize,
+}
+
+struct Kept {
+    image: wgpu::Texture,
+    wanted: View,
+    moves: bool,
+    state: State,
+}
+
+/// An eye that is being shown something.
+pub(crate) struct Seen<'a> {
+    pub(crate) eye: &'a Eye,
+    /// Of the volume, in its space.
+    pub(crate) wanted: View,
+    /// From which the front picture was cast.
+    pub(crate) cast_from: View,
+    pub(crate) picture: &'a wgpu::TextureView,
+}
+
+impl Checks {
+    /// Of every so many refreshes, and so many of them at most.
+    pub(crate) fn new(gpu: &Gpu, every: u64, most: usize) -> Self {
+        let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm);
+        Self { stage, every: every.max(1), refresh: 0, kept: Vec::new(), most: 2 * most }
+    }
+
+    /// Encodes keeping what the eyes are shown, if it is time to.
+    pub(crate) fn keep(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        state: &State,
+        seen: [Seen<'_>; 2],
+    ) -> Result<(), Failure> {
+        self.refresh += 1;
+        if !self.refresh.is_multiple_of(self.every) || self.kept.len() >= self.most {
+            return Ok(());
+        }
+        for Seen { eye, wanted, cast_from, picture } in seen {
+            let image = canvas::texture(gpu, wanted.size, wgpu::TextureFormat::Rgba8Unorm)?;
+            let view = image.create_view(&wgpu::TextureViewDescriptor::default());
+            let scenery = Scenery { picture: Some(picture), ..Scenery::default() };
+            self.stage.draw(gpu, encoder, &view, eye, [0.0; 3], &scenery);
+            let eye_m = |view: &View| view.view_from_world.inverse().translation;
+            let turned =
+                !wanted.view_from_world.matrix3.abs_diff_eq(cast_from.view_from_world.matrix3, STILL);
+            let moves = turned || eye_m(&wanted).distance(eye_m(&cast_from)) > STILL;
+            self.kept.push(Kept { image, wanted, moves, state: state.clone() });
+        }
+        Ok(())
+    }
+
+    /// Casts what should have been seen.
+    pub(crate) fn finish(self, gpu: &Gpu, casting: &mut Casting) -> Result<Vec<Checked>, Failure> {
+        let compare_one = |Kept { image, wanted, moves, state }: Kept| {
+            let truth = casting.render(gpu, &state, wanted)?.over_background([0.0; 3]);
+            let texels: Vec<[u8; 4]> = gpu.read_texture(&image)?;
+            let rgb = texels.iter().map(|&[r, g, b, _]| [r, g, b].map(|value| f32::from(value) / 255.0));
+            let [width, height] = wanted.size;
+            let shown = RgbImage { width, height, rgb: rgb.collect() };
+            let dssim = compare(&shown, &truth).map_err(Failure::input)?.dssim();
+            Ok(Checked { dssim, moves })
+        };
+        self.kept.into_iter().map(compare_one).collect()
+    }
+}

@@ -1,0 +1,59 @@
+//! What has eyes and hands, and shows pictures at its refreshes.
+
+use crate::failure::Failure;
+use std::sync::Arc;
+use wheatstone_core::headset::{Side, Tick};
+use wheatstone_render::Gpu;
+
+/// A headset, there or not.
+pub(crate) trait Headset {
+    /// The device that its pictures are drawn on.
+    fn gpu(&self) -> &Arc<Gpu>;
+
+    /// What it is, for people.
+    fn name(&self) -> String;
+
+    /// The format of what is drawn to.
+    fn image_format(&self) -> wgpu::TextureFormat;
+
+    /// Width and height of the eyes' pictures, pixels.
+    fn eye_sizes(&self) -> [[u32; 2]; 2];
+
+    /// Waits for the next refresh, lets its pictures be drawn, and shows them. An error of what draws comes back as it is.
+    fn refresh(
+        &mut self,
+        draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
+    ) -> Result<Moment, Failure>;
+
+    /// Lets a hand feel that it has taken hold of something.
+    fn pulse(&mut self, side: Side) -> Result<(), Failure>;
+
+    /// What people should know of what has happened since this was last asked.
+    fn told(&mut self) -> Vec<String>;
+
+    /// Asks it to end; it does so within some refreshes.
+    fn close(&mut self) -> Result<(), Failure>;
+}
+
+/// A refresh that is being drawn for.
+pub(crate) trait Sight {
+    /// When it is, where the eyes will be then, and what the hands do.
+    fn tick(&self) -> &Tick;
+
+    /// What the eyes' pictures are drawn to; all of their pixels are.
+    fn eye_images(&mut self) -> Result<[wgpu::TextureView; 2], Failure>;
+
+    /// What the panel is drawn to when it is drawn anew; none if there is no panel.
+    fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure>;
+}
+
+/// What a headset was up to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Moment {
+    /// It wanted no pictures; what it wants is looked after again soon.
+    Idle,
+    /// A refresh has got its pictures.
+    Shown,
+    /// It will want no more, for a reason.
+    Ended(String),
+}

@@ -1,0 +1,28 @@
+//! A volume in a headset: a runtime's ([`openxr`]) or, for a recording and for tests, none's ([`replay`]).
+//!
+//! [`room::Room`] is what is in the room: the viewer's session and casting, seen by eyes that a [`headset::Headset`] tells of, and
+//! taken by hands. The volume does not move: eyes and hands do, in its upright space
+//! ([`Stand`](wheatstone_core::headset::Stand)), so that pictures go on to be cast, and old ones to be warped, while it is carried.
+
+mod check;
+mod eyes;
+mod hands;
+mod headset;
+mod ladder;
+mod mirror;
+#[cfg(any(target_os = "linux", target_os = "windows"))]
+mod openxr;
+mod panel;
+mod record;
+mod replay;
+mod report;
+mod room;
+mod stage;
+
+pub(crate) use mirror::Mirror;
+#[cfg(any(target_os = "linux", target_os = "windows"))]
+pub(crate) use openxr::{Connected, OpenXr};
+pub(crate) use record::Record;
+pub(crate) use replay::{Guided, Played, Replay};
+pub(crate) use report::Report;
+pub(crate) use room::{Beside, Opening, Room, load, run};

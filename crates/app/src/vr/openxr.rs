@@ -1,0 +1,152 @@
+//! A headset that an OpenXR runtime tells of.
+
+use super::headset::{Headset, Moment, Sight};
+use super::panel;
+use crate::failure::Failure;
+use glam::{DQuat, DVec3};
+use std::f64::consts::FRAC_PI_4;
+use std::sync::Arc;
+use wheatstone_core::head::Pose;
+use wheatstone_core::headset::{Side, Tick};
+use wheatstone_render::Gpu;
+use wheatstone_xr::{
+    Anchor, EndReason, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
+};
+
+/// How long a hand feels that it has taken hold of something, seconds, and how strongly.
+const PULSE: (f64, f32) = (0.02, 0.6);
+
+/// A session of a runtime.
+pub(crate) struct OpenXr {
+    session: Session,
+    graphics: Graphics,
+    runtime: String,
+}
+
+/// A runtime that has been connected to, and its device: what does not change when a session ends.
+pub(crate) struct Connected(Graphics);
+
+impl Connected {
+    /// Connects to the runtime that the system has set up.
+    pub(crate) fn connect() -> Result<Self, Failure> {
+        Ok(Self(Runtime::connect("Wheatstone")?.open_gpu()?))
+    }
+
+    /// The device.
+    pub(crate) fn gpu(&self) -> &Arc<Gpu> {
+        self.0.gpu()
+    }
+
+    /// What a window's surface is made by.
+    pub(crate) fn instance(&self) -> &wgpu::Instance {
+        self.0.instance()
+    }
+}
+
+impl OpenXr {
+    /// Begins a session. From then on nothing else may give the device work from another thread.
+    pub(crate) fn begin(Connected(graphics): Connected) -> Result<Self, Failure> {
+        let options = SessionOptions { panel_px: Some(panel::SIZE), ..SessionOptions::default() };
+        let session = Session::begin(&graphics, options)?;
+        let runtime = graphics.runtime().description().name.clone();
+        Ok(Self { session, graphics, runtime })
+    }
+}
+
+impl Headset for OpenXr {
+    fn gpu(&self) -> &Arc<Gpu> {
+        self.graphics.gpu()
+    }
+
+    fn name(&self) -> String {
+        self.runtime.clone()
+    }
+
+    fn image_format(&self) -> wgpu::TextureFormat {
+        self.session.image_format()
+    }
+
+    fn eye_sizes(&self) -> [[u32; 2]; 2] {
+        self.session.eye_sizes()
+    }
+
+    fn refresh(
+        &mut self,
+        draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
+    ) -> Result<Moment, Failure> {
+        match self.session.poll()? {
+            Phase::Idle => Ok(Moment::Idle),
+            Phase::Ended(EndReason::Exited) => Ok(Moment::Ended("the session was closed".to_owned())),
+            Phase::Ended(EndReason::Lost) => {
+                Ok(Moment::Ended("the runtime took the session away".to_owned()))
+            }
+            Phase::Running => {
+                let mut frame = self.session.wait()?;
+                draw(&mut Drawn(&mut frame))?;
+                frame.end(Some(&panel_pose()))?;
+                Ok(Moment::Shown)
+            }
+        }
+    }
+
+    fn pulse(&mut self, side: Side) -> Result<(), Failure> {
+        Ok(self.session.pulse(side, PULSE.0, PULSE.1)?)
+    }
+
+    fn told(&mut self) -> Vec<String> {
+        self.session.events().filter_map(|event| told(&event)).collect()
+    }
+
+    fn close(&mut self) -> Result<(), Failure> {
+        Ok(self.session.request_exit()?)
+    }
+}
+
+/// Above the left controller, tilted towards the eyes.
+fn panel_pose() -> Panel {
+    Panel {
+        anchor: Anchor::Grip(Side::Left),
+        pose: Pose {
+            position_m: DVec3::new(0.0, 0.08, -0.06),
+            orientation: DQuat::from_rotation_x(-FRAC_PI_4),
+        },
+        size_m: panel::SIZE.map(|side| side as f32 * panel::M_PER_PIXEL),
+    }
+}
+
+/// An event in words, if it is worth any.
+fn told(event: &SessionEvent) -> Option<String> {
+    match event {
+        SessionEvent::FocusLost => Some("another program has the hands now".to_owned()),
+        SessionEvent::FocusGained => Some("the hands are here".to_owned()),
+        SessionEvent::Recentred => Some("the room has a new middle".to_owned()),
+        SessionEvent::RuntimeEnding => Some("the headset's software is ending".to_owned()),
+        SessionEvent::RefreshRateChanged { hz } => Some(format!("{hz:.0} refreshes per second")),
+        _ => None,
+    }
+}
+
+struct Drawn<'a, 's>(&'a mut Frame<'s>);
+
+impl Sight for Drawn<'_, '_> {
+    fn tick(&self) -> &Tick {
+        self.0.tick()
+    }
+
+    fn eye_images(&mut self) -> Result<[wgpu::TextureView; 2], Failure> {
+        Ok(self.0.acquire_eyes()?.map(|image| image.color))
+    }
+
+    fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {
+        Ok(self.0.acquire_panel()?)
+    }
+}
+
+impl From<XrError> for Failure {
+    fn from(error: XrError) -> Self {
+        match error {
+            XrError::Gpu(error) => Self::Gpu(error),
+            other => Self::Internal(other.into()),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What a session tells when it ends.
+
+use super::check::Checked;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::time::Duration;
+use wheatstone_core::headset::{Late, Stand};
+
+/// What has been measured.
+#[derive(Debug, Default)]
+pub(crate) struct Report {
+    pub(crate) device: String,
+    pub(crate) headset: String,
+    pub(crate) volume: String,
+    pub(crate) period_s: f64,
+    pub(crate) late: Late,
+    pub(crate) draws: Vec<Duration>,
+    /// Refreshes by the warp that showed them.
+    pub(crate) warps: BTreeMap<&'static str, u32>,
+    /// Pictures of both eyes that were cast whole.
+    pub(crate) pictures: u64,
+    pub(crate) stand: Option<Stand>,
+    /// The view as it was left, in the form of saved views.
+    pub(crate) view: Value,
+    pub(crate) checked: Vec<Checked>,
+    pub(crate) failures: Vec<String>,
+    pub(crate) ended: String,
+}
+
+impl Report {
+    /// Milliseconds that drawing took: the middle, 99 of 100, and the most.
+    fn draw_ms(&self) -> Option<[f64; 3]> {
+        let mut sorted = self.draws.clone();
+        sorted.sort();
+        let last = sorted.len().checked_sub(1)?;
+        let at = |share: f64| 1e3 * sorted[(share * last as f64).round() as usize].as_secs_f64();
+        Some([at(0.5), at(0.99), at(1.0)])
+    }
+
+    /// Mean and worst DSSIM of the refreshes that were checked, by whether the eyes moved.
+    fn dssim(&self, moves: bool) -> Option<[f64; 2]> {
+        let of: Vec<f64> = self.checked.iter().filter(|c| c.moves == moves).map(|c| c.dssim).collect();
+        let worst = of.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (!of.is_empty()).then(|| [of.iter().sum::<f64>() / of.len() as f64, worst])
+    }
+
+    /// One row.
+    pub(crate) fn to_json(&self) -> Value {
+        let [median, p99, most] = self.draw_ms().map_or([None; 3], |ms| ms.map(Some));
+        let [moving, still] = [true, false].map(|moves| self.dssim(moves));
+        json!({
+            "headset": self.headset,
+            "volume": self.volume,
+            "period_ms": 1e3 * self.period_s,
+            "refreshes": self.draws.len(),
+            "shown": self.late.total().shown,
+            "dropped": self.late.total().dropped,
+            "pictures": self.pictures,
+            "draw_ms_median": median,
+            "draw_ms_p99": p99,
+            "draw_ms_worst": most,
+            "warps": self.warps,
+            "dssim_moving_mean": moving.map(|of| of[0]),
+            "dssim_moving_worst": moving.map(|of| of[1]),
+            "dssim_still_mean": still.map(|of| of[0]),
+            "dssim_still_worst": still.map(|of| of[1]),
+            "stand": self.stand.map(|stand| json!({
+                "position_m": stand.pose.position_m.to_array(),
+                "orientation": stand.pose.orientation.to_array(),
+                "longest_side_m": stand.longest_side_m,
+            })),
+            "view": self.view,
+            "failures": self.failures,
+            "ended": self.ended,
+        })
+    }
+
+    /// Lines for people.
+    pub(crate) fn to_lines(&self) -> String {
+        let late = self.late.total();
+        let mut lines = vec![
+            format!("{} on {}: {} of {}", self.headset, self.device, self.volume, self.ended),
+            format!(
+                "{} refreshes of {:.1} ms; after the first second {} shown, {} dropped; {} pictures cast",
+                self.draws.len(),
+                1e3 * self.period_s,
+                late.shown,
+                late.dropped,
+                self.pictures
+            ),
+        ];
+        if let Some([median, p99, most]) = self.draw_ms() {
+            lines.push(format!(
+                "drawing took {median:.1} ms (median), {p99:.1} ms (99 of 100), {most:.1} ms at most"
+            ));
+        }
+        for (moves, what) in [(true, "moving"), (false, "still")] {
+            if let Some([mean, worst]) = self.dssim(moves) {
+                lines.push(format!("DSSIM from direct renders, {what}: mean {mean:.5}, worst {worst:.5}"));
+            }
+        }
+        lines.join("\n")
+    }
+}

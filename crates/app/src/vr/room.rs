@@ -1,0 +1,392 @@
+//! One refresh after the other: eyes and hands in, pictures out, then work for the device.
+
+use super::check::{Checks, Seen};
+use super::eyes::{see_alike, upright_views};
+use super::hands::Hands;
+use super::headset::{Headset, Moment, Sight};
+use super::ladder::Ladder;
+use super::panel::{Panel, Told};
+use super::report::Report;
+use super::stage::{ColoredLine, Scenery, Stage};
+use crate::failure::Failure;
+use crate::viewer::casting::Casting;
+use crate::viewer::command::Command;
+use crate::viewer::eyes::{Eyes, Wanted};
+use crate::viewer::loading::Arrived;
+use crate::viewer::session::{Session, Showing};
+use crate::viewer::timings::{Frame, Timings};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+use wheatstone_core::head::Pose;
+use wheatstone_core::headset::{Eye, Interaction, Scale, Side, Stand, Tick, floor, horizon};
+use wheatstone_core::view::View;
+use wheatstone_render::Gpu;
+
+/// How long a headset that wants no pictures is left alone.
+const NAP: Duration = Duration::from_millis(10);
+
+/// Part of a refresh that is kept free, for what the runtime does with pictures.
+const KEPT_FREE: f64 = 0.15;
+
+/// Of the floor and the horizon.
+const FLOOR_RGB: [f32; 3] = [0.35, 0.4, 0.45];
+
+/// What a session begins with.
+pub(crate) struct Opening {
+    pub(crate) session: Session,
+    /// The volume that is shown at first.
+    pub(crate) arrived: (Box<Arrived>, Showing),
+    /// What is done once the volume is there.
+    pub(crate) commands: Vec<Command>,
+    pub(crate) scale: Scale,
+    /// Where the volume stands at first; none before the eyes.
+    pub(crate) stand: Option<Stand>,
+    pub(crate) has_floor: bool,
+    /// Every how many refreshes what is shown is compared with what should be, and how often at most.
+    pub(crate) checks: Option<(u64, usize)>,
+    /// Refreshes after which to end.
+    pub(crate) refreshes: Option<u64>,
+}
+
+/// Waits for the volume that a session begins with.
+pub(crate) fn load(session: &mut Session, gpu: &Arc<Gpu>) -> Result<(Box<Arrived>, Showing), Failure> {
+    loop {
+        if let Some(arrived) = session.step(gpu) {
+            return Ok(arrived);
+        }
+        if session.progress().is_none() {
+            let reason = session.notes.failures().first().cloned();
+            return Err(Failure::input(reason.unwrap_or_else(|| "no volume is to be shown".to_owned())));
+        }
+        thread::sleep(NAP);
+    }
+}
+
+/// Shows a volume in a headset until that ends, or something else wants it to.
+pub(crate) fn run(
+    headset: &mut dyn Headset,
+    opening: Opening,
+    beside: &mut dyn Beside,
+) -> Result<Report, Failure> {
+    let mut room = Room::new(headset, opening)?;
+    let ended = loop {
+        match room.refresh(headset)? {
+            Moment::Ended(reason) => break reason,
+            Moment::Idle => thread::sleep(NAP),
+            Moment::Shown => {}
+        }
+        if room.wants_to_end() || beside.has_quit() {
+            headset.close()?;
+        }
+        beside.refreshed(&mut room)?;
+    };
+    room.into_report(ended)
+}
+
+/// What goes on beside the headset.
+pub(crate) trait Beside {
+    /// After each refresh: a mirror is drawn, ticks are recorded.
+    fn refreshed(&mut self, room: &mut Room) -> Result<(), Failure>;
+
+    /// Whether the session is to end.
+    fn has_quit(&self) -> bool;
+}
+
+/// What a window beside the headset shows.
+pub(crate) struct Mirrored<'a> {
+    pub(crate) session: &'a mut Session,
+    pub(crate) casting: &'a Casting,
+    pub(crate) timings: &'a Timings,
+    pub(crate) device: &'a str,
+    /// Of the left and the right eye, premultiplied.
+    pub(crate) pictures: Option<&'a [wgpu::TextureView; 2]>,
+}
+
+/// The volume, what looks at it, and what takes hold of it.
+pub(crate) struct Room {
+    gpu: Arc<Gpu>,
+    session: Session,
+    arrived: Option<(Box<Arrived>, Showing)>,
+    /// Not done yet.
+    commands: Vec<Command>,
+    casting: Casting,
+    eyes: Eyes,
+    stage: Stage,
+    panel: Panel,
+    hands: Option<Hands>,
+    ladder: Ladder,
+    checks: Option<Checks>,
+    scale: Scale,
+    stand: Option<Stand>,
+    has_floor: bool,
+    refreshes: Option<u64>,
+    aimed: Vec<View>,
+    tick: Option<Tick>,
+    pictures: Option<[wgpu::TextureView; 2]>,
+    timings: Timings,
+    told: Vec<String>,
+    report: Report,
+}
+
+impl Room {
+    fn new(headset: &dyn Headset, opening: Opening) -> Result<Self, Failure> {
+        let gpu = Arc::clone(headset.gpu());
+        let Opening { session, arrived, commands, scale, stand, has_floor, checks, refreshes } = opening;
+        let report = Report {
+            device: format!("{} ({})", gpu.description().name, gpu.description().backend),
+            headset: headset.name(),
+            ..Report::default()
+        };
+        Ok(Self {
+            session,
+            arrived: Some(arrived),
+            commands,
+            casting: Casting::new(&gpu)?,
+            eyes: Eyes::new(&gpu)?,
+            stage: Stage::new(gpu.device(), headset.image_format()),
+            panel: Panel::new(&gpu, headset.image_format()),
+            hands: None,
+            ladder: Ladder::default(),
+            checks: checks.map(|(every, most)| Checks::new(&gpu, every, most)),
+            scale,
+            stand,
+            has_floor,
+            refreshes,
+            aimed: Vec::new(),
+            tick: None,
+            pictures: None,
+            timings: Timings::default(),
+            told: Vec::new(),
+            report,
+            gpu,
+        })
+    }
+
+    /// What eyes and hands did last.
+    pub(crate) fn tick(&self) -> Option<&Tick> {
+        self.tick.as_ref()
+    }
+
+    /// What a window beside the headset shows.
+    pub(crate) fn mirrored(&mut self) -> Mirrored<'_> {
+        Mirrored {
+            session: &mut self.session,
+            casting: &self.casting,
+            timings: &self.timings,
+            device: &self.report.device,
+            pictures: self.pictures.as_ref(),
+        }
+    }
+
+    fn wants_to_end(&self) -> bool {
+        let is_over = self.refreshes.is_some_and(|most| self.report.draws.len() as u64 >= most);
+        is_over || self.session.has_quit()
+    }
+
+    /// Waits for the next refresh, draws it, and hands over as much casting as fits before the one after it.
+    fn refresh(&mut self, headset: &mut dyn Headset) -> Result<Moment, Failure> {
+        let sizes = headset.eye_sizes();
+        let mut grabbed = [false; 2];
+        let mut begun = None;
+        let moment = headset.refresh(&mut |sight| {
+            begun = Some(Instant::now());
+            grabbed = self.draw(sight, sizes)?;
+            Ok(())
+        })?;
+        self.told.extend(headset.told());
+        for side in Side::BOTH.into_iter().filter(|side| grabbed[side.index()]) {
+            headset.pulse(side)?;
+        }
+        match (&moment, begun, self.tick) {
+            (Moment::Shown, Some(begun), Some(tick)) => {
+                self.report.late.submit(tick.display_time_s, tick.period_s);
+                self.report.period_s = tick.period_s;
+                let left_s = (1.0 - KEPT_FREE) * tick.period_s - begun.elapsed().as_secs_f64();
+                self.casting.refresh(&self.gpu, Duration::from_secs_f64(left_s.max(0.0)))?;
+            }
+            _ => self.report.late.pause(),
+        }
+        Ok(moment)
+    }
+
+    /// Draws a refresh; which hands have taken hold of something.
+    fn draw(&mut self, sight: &mut dyn Sight, sizes: [[u32; 2]; 2]) -> Result<[bool; 2], Failure> {
+        let begun = Instant::now();
+        let tick = *sight.tick();
+        self.receive(&tick, sizes)?;
+        let grabbed = self.follow_hands(&tick);
+        let Some(eyes) = tick.eyes else {
+            self.tick = Some(tick);
+            return Ok(grabbed);
+        };
+        let stand = self.hands.as_ref().map(|hands| *hands.stand());
+        let wanted = stand.map(|stand| upright_views(&eyes, &stand, sizes));
+        if let Some(views) = &wanted {
+            self.aim(views)?;
+        }
+        let warp = self.ladder.choose(self.session.state().pace.warp, tick.period_s);
+        self.pictures = match (self.casting.front(), &wanted) {
+            (Some(front), Some(views)) => {
+                let wanted = Wanted { picture: self.casting.pictures(), views: views.to_vec(), warp };
+                self.eyes.show(&self.gpu, front, wanted)?
+            }
+            _ => None,
+        };
+        let images = sight.eye_images()?;
+        let submission = self.draw_eyes(&images, &eyes, &tick, wanted.as_ref())?;
+        if self.panel.is_due()
+            && let Some(image) = sight.panel_image()?
+        {
+            self.draw_panel(&image, &tick, warp.name())?;
+        }
+        self.gpu.wait_for(submission)?;
+        let took = begun.elapsed();
+        if self.pictures.is_some() {
+            self.ladder.note(warp, took);
+            *self.report.warps.entry(warp.name()).or_default() += 1;
+        }
+        let since = self.tick.map_or(tick.period_s, |last| tick.display_time_s - last.display_time_s);
+        self.timings.push(Frame { total_ms: 1e3 * since as f32, draw_ms: 1e3 * took.as_secs_f32() });
+        self.report.draws.push(took);
+        self.tick = Some(tick);
+        Ok(grabbed)
+    }
+
+    /// Shows a volume that has arrived: before the eyes, or where the one before stood.
+    fn receive(&mut self, tick: &Tick, sizes: [[u32; 2]; 2]) -> Result<(), Failure> {
+        // Until the head is tracked nobody knows where to put it.
+        let Some(eyes) = tick.eyes else { return Ok(()) };
+        let Some((arrived, showing)) = self.arrived.take().or_else(|| self.session.step(&self.gpu)) else {
+            return Ok(());
+        };
+        let (grid, up) = (arrived.facts.grid.clone(), showing.state.look.up.direction());
+        let between = Tick { eyes: Some(eyes), ..*tick }.between_eyes().unwrap_or(eyes[0].pose);
+        let stand = match (&self.hands, self.stand) {
+            (Some(hands), _) => *hands.stand(),
+            (None, Some(stand)) => stand,
+            (None, None) => Stand::before(&between, &grid, up, self.scale),
+        };
+        let views = upright_views(&eyes, &stand, largest(sizes)).to_vec();
+        match self.casting.receive(&self.gpu, *arrived, &showing.state, views.clone()) {
+            Ok(()) => {
+                self.aimed = views;
+                let clip = showing.state.settings().map_err(Failure::input)?.clip;
+                self.report.volume = showing.name().to_owned();
+                self.session.show(showing);
+                let interaction = Interaction::new(&grid, up, stand, &clip);
+                self.hands = Some(Hands::new(interaction, self.session.state()));
+                for command in std::mem::take(&mut self.commands) {
+                    self.session.perform(&command);
+                }
+                Ok(())
+            }
+            Err(Failure::Gpu(error)) => Err(error.into()),
+            Err(failure) => {
+                self.session.refuse(&failure);
+                Ok(())
+            }
+        }
+    }
+
+    fn follow_hands(&mut self, tick: &Tick) -> [bool; 2] {
+        let Some(hands) = &mut self.hands else { return [false; 2] };
+        let (commands, grabbed) = hands.update(tick, self.session.state());
+        commands.iter().for_each(|command| self.session.perform(command));
+        grabbed
+    }
+
+    /// Has the next picture cast from where the eyes are, unless that would be the same.
+    fn aim(&mut self, views: &[View; 2]) -> Result<(), Failure> {
+        let sizes = largest([views[0].size, views[1].size]);
+        let views: Vec<View> = views.iter().zip(sizes).map(|(view, size)| View { size, ..*view }).collect();
+        let is_same = self
+            .casting
+            .placement()
+            .is_some_and(|placement| see_alike(&views, &self.aimed, placement.world_from_texture()));
+        if !is_same {
+            self.aimed = views;
+        }
+        self.casting.follow(&self.gpu, self.session.state(), self.aimed.clone())
+    }
+
+    fn draw_eyes(
+        &mut self,
+        images: &[wgpu::TextureView; 2],
+        eyes: &[Eye; 2],
+        tick: &Tick,
+        wanted: Option<&[View; 2]>,
+    ) -> Result<wgpu::SubmissionIndex, Failure> {
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let behind = if self.has_floor { surroundings(tick) } else { Vec::new() };
+        let in_front = self.hands.as_ref().map_or_else(Vec::new, |hands| hands.lines(tick));
+        let background = self.session.state().look.background;
+        for (eye, image) in images.iter().enumerate() {
+            let picture = self.pictures.as_ref().map(|pictures| &pictures[eye]);
+            let scenery = Scenery { behind: &behind, picture, in_front: &in_front };
+            self.stage.draw(&self.gpu, &mut encoder, image, &eyes[eye], background, &scenery);
+        }
+        if let (Some(checks), Some(pictures), Some(wanted), Some(front)) =
+            (&mut self.checks, &self.pictures, wanted, self.casting.front())
+        {
+            let cast_from: Vec<View> = front.pictures().map(|(_, view)| view).collect();
+            let seen = [0, 1].map(|eye: usize| Seen {
+                eye: &eyes[eye],
+                wanted: wanted[eye],
+                cast_from: cast_from[eye.min(cast_from.len() - 1)],
+                picture: &pictures[eye],
+            });
+            checks.keep(&self.gpu, &mut encoder, self.session.state(), seen)?;
+        }
+        Ok(self.gpu.queue().submit([encoder.finish()]))
+    }
+
+    fn draw_panel(&mut self, image: &wgpu::TextureView, tick: &Tick, warp: &str) -> Result<(), Failure> {
+        let state = self.session.state();
+        let [lo, hi] = state.transfer.window;
+        let look = format!("{}, window {lo:.4} to {hi:.4}", state.look.mode.name());
+        let late = self.report.late.total();
+        let refreshes = format!("{}, warp {warp}, {} dropped", self.timings.described(), late.dropped);
+        let notes: Vec<String> = self.session.notes.latest().iter().map(|note| note.text.clone()).collect();
+        let told = Told {
+            volume: &self.report.volume,
+            look: &look,
+            values: [None; 2],
+            refreshes: &refreshes,
+            notes: if notes.is_empty() { &self.told } else { &notes },
+            timings: &self.timings,
+            period_ms: 1e3 * tick.period_s as f32,
+        };
+        self.panel.draw(&self.gpu, image, &told)
+    }
+
+    fn into_report(mut self, ended: String) -> Result<Report, Failure> {
+        self.gpu.wait()?;
+        let mut report = self.report;
+        report.stand = self.hands.as_ref().map(|hands| *hands.stand());
+        report.pictures = self.casting.pictures();
+        report.view = serde_json::to_value(self.session.state()).map_err(Failure::input)?;
+        report.failures = self.session.notes.failures().to_vec();
+        report.ended = ended;
+        if let Some(checks) = self.checks.take() {
+            report.checked = checks.finish(&self.gpu, &mut self.casting)?;
+        }
+        Ok(report)
+    }
+}
+
+/// One size for both eyes' casts.
+fn largest(sizes: [[u32; 2]; 2]) -> [[u32; 2]; 2] {
+    let [left, right] = sizes;
+    [[left[0].max(right[0]), left[1].max(right[1])]; 2]
+}
+
+/// Floor and horizon about the head.
+fn surroundings(tick: &Tick) -> Vec<ColoredLine> {
+    let Some(Pose { position_m, .. }) = tick.between_eyes() else { return Vec::new() };
+    floor(position_m, 0.0)
+        .chain(horizon(position_m))
+        .map(|line| ColoredLine::new(line.ends_m, line.alphas, FLOOR_RGB))
+        .collect()
+}

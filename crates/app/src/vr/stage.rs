@@ -1,0 +1,256 @@
+//! Draws what an eye sees of the room.
+
+use glam::{DMat4, DVec3, DVec4};
+use wgpu::util::DeviceExt as _;
+use wheatstone_core::headset::Eye;
+use wheatstone_core::view::Frustum;
+use wheatstone_render::Gpu;
+
+/// Width of lines, as a part of the picture's.
+const LINE_WIDTH: f32 = 1.0 / 600.0;
+
+/// A coloured line; mirror of the attributes in `stage.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct ColoredLine {
+    /// Its ends in the room, metres, each with its opacity.
+    pub(crate) ends: [[f32; 4]; 2],
+    /// Display-referred.
+    pub(crate) rgb: [f32; 3],
+}
+
+impl ColoredLine {
+    /// Between two points in the room, metres.
+    pub(crate) fn new(ends_m: [DVec3; 2], alphas: [f32; 2], rgb: [f32; 3]) -> Self {
+        let end = |end: usize| ends_m[end].as_vec3().extend(alphas[end]).to_array();
+        Self { ends: [end(0), end(1)], rgb }
+    }
+}
+
+/// Mirror of `Stage` in `stage.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct StageUniform {
+    clip_from_room: [[f32; 4]; 4],
+    size_px: [f32; 2],
+    line_px: f32,
+    padding: u32,
+}
+
+/// What is seen besides the background.
+#[derive(Debug, Default)]
+pub(crate) struct Scenery<'a> {
+    pub(crate) behind: &'a [ColoredLine],
+    /// Of the volume, premultiplied; none as long as there is none.
+    pub(crate) picture: Option<&'a wgpu::TextureView>,
+    pub(crate) in_front: &'a [ColoredLine],
+}
+
+/// Pipelines for images of a format.
+pub(crate) struct Stage {
+    layout: wgpu::BindGroupLayout,
+    picture: wgpu::RenderPipeline,
+    line: wgpu::RenderPipeline,
+    sampler: wgpu::Sampler,
+    /// In the place of a picture.
+    nothing: wgpu::TextureView,
+}
+
+impl Stage {
+    pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        let module = device.create_shader_module(wgpu::include_wgsl!("stage.wgsl"));
+        let entry =
+            |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("stage"),
+            entries: &[
+                entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT, uniform),
+                entry(1, wgpu::ShaderStages::FRAGMENT, texture),
+                entry(2, wgpu::ShaderStages::FRAGMENT, sampler),
+            ],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("stage"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = |[vertex, fragment]: [&'static str; 2],
+                        buffers: &[Option<wgpu::VertexBufferLayout<'_>>]| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(fragment),
+                layout: Some(&pipeline_layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some(vertex),
+                    compilation_options: Default::default(),
+                    buffers,
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    compilation_options: Default::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                        ..format.into()
+                    })],
+                }),
+                primitive: Default::default(),
+                depth_stencil: None,
+                multisample: Default::default(),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x3];
+        let lines = wgpu::VertexBufferLayout {
+            array_stride: size_of::<ColoredLine>() as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &attributes,
+        };
+        let nothing = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("no picture"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        Self {
+            picture: pipeline(["everywhere", "show_picture"], &[]),
+            line: pipeline(["line_corner", "line"], &[Some(lines)]),
+            layout,
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("interpolated"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+            nothing: nothing.create_view(&wgpu::TextureViewDescriptor::default()),
+        }
+    }
+
+    /// Encodes all pixels of an eye's image.
+    pub(crate) fn draw(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        image: &wgpu::TextureView,
+        eye: &Eye,
+        background: [f32; 3],
+        scenery: &Scenery<'_>,
+    ) {
+        let device = gpu.device();
+        let size = image.texture().size();
+        let size_px = [size.width, size.height].map(|side| side as f32);
+        let uniform = StageUniform {
+            clip_from_room: clip_from_room(eye).as_mat4().to_cols_array_2d(),
+            size_px,
+            line_px: (LINE_WIDTH * size_px[0]).max(1.0),
+            padding: 0,
+        };
+        let buffer = |contents, usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("stage"),
+                contents,
+                usage,
+            })
+        };
+        let uniform = buffer(bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("stage"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(scenery.picture.unwrap_or(&self.nothing)),
+                },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            ],
+        });
+        let lines = [scenery.behind, scenery.in_front]
+            .map(|lines| buffer(bytemuck::cast_slice(lines), wgpu::BufferUsages::VERTEX));
+        let [r, g, b] = background.map(f64::from);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("stage"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: image,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &group, &[]);
+        let draw_lines = |pass: &mut wgpu::RenderPass<'_>, buffer: &wgpu::Buffer, lines: &[ColoredLine]| {
+            if !lines.is_empty() {
+                pass.set_pipeline(&self.line);
+                pass.set_vertex_buffer(0, buffer.slice(..));
+                pass.draw(0..6, 0..lines.len() as u32);
+            }
+        };
+        draw_lines(&mut pass, &lines[0], scenery.behind);
+        if scenery.picture.is_some() {
+            pass.set_pipeline(&self.picture);
+            pass.draw(0..3, 0..1);
+        }
+        draw_lines(&mut pass, &lines[1], scenery.in_front);
+    }
+}
+
+/// The projection of an eye; depths are not kept.
+fn clip_from_room(eye: &Eye) -> DMat4 {
+    let Frustum { left, right, down, up, .. } = eye.frustum;
+    let (width, height) = (right - left, up - down);
+    let clip_from_eye = DMat4::from_cols(
+        DVec4::new(2.0 / width, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, 2.0 / height, 0.0, 0.0),
+        DVec4::new((right + left) / width, (up + down) / height, 0.0, -1.0),
+        DVec4::ZERO,
+    );
+    clip_from_eye * DMat4::from(eye.pose.world_from_own().inverse())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+    use wheatstone_core::head::Pose;
+
+    #[test]
+    fn the_pipelines_build_on_the_noop_device() {
+        let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        Stage::new(&device, wgpu::TextureFormat::Rgba8Unorm);
+        assert_eq!(pollster::block_on(scope.pop()).map(|error| error.to_string()), None);
+    }
+
+    #[test]
+    fn lines_land_where_rays_of_the_view_pass() {
+        let pose = Pose { position_m: DVec3::new(0.1, 1.6, 0.2), orientation: DQuat::from_rotation_y(0.3) };
+        let frustum =
+            Frustum { left: -1.2, right: 0.9, down: -1.0, up: 1.1, near_m: 0.05, far_m: f64::INFINITY };
+        let eye = Eye { pose, frustum };
+        let point = DVec3::new(-0.2, 1.4, -0.8);
+        let clip = clip_from_room(&eye) * point.extend(1.0);
+        let at = eye.view([200, 100]).pixel_position(point).unwrap();
+        let pixel = [100.0 * (1.0 + clip.x / clip.w), 50.0 * (1.0 - clip.y / clip.w)];
+        assert!((pixel[0] - at.x).abs() < 1e-9 && (pixel[1] - at.y).abs() < 1e-9, "{pixel:?} {at}");
+    }
+}
