@@ -135,16 +135,16 @@ impl VrBenchArgs {
             HeadsetName::None => {
                 let gpu = Arc::new(Gpu::open_best()?);
                 let loaded = open(source, &gpu)?;
-                let (played, stand) = played(recording, &loaded.1);
+                let (recording, stand) = played(recording, &loaded.1)?;
                 let display = Display::new(self.refresh_hz).map_err(Failure::input)?;
-                let mut headset = Replay::new(gpu, played, display, self.size)?;
+                let mut headset = Replay::new(gpu, recording, display, self.size)?;
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
             HeadsetName::Openxr => {
                 let connected = Connected::connect()?;
                 let loaded = open(source, connected.gpu())?;
-                let (played, stand) = played(recording, &loaded.1);
-                let mut headset = Guided::new(OpenXr::begin(connected)?, played);
+                let (recording, stand) = played(recording, &loaded.1)?;
+                let mut headset = Guided::new(OpenXr::begin(connected)?, recording);
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
         }

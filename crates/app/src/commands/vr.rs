@@ -12,7 +12,7 @@ use crate::viewer::session::{Session, Showing};
 use crate::viewer::state::{Edit, WarpName};
 use crate::volume_args::RawArgs;
 use crate::vr::{
-    Beside, Connected, Guided, Mirror, OpenXr, Opening, Played, Record, Replay, Room, load, run as show,
+    Beside, Connected, Guided, Mirror, OpenXr, Opening, Record, Replay, Room, load, run as show,
 };
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
@@ -105,8 +105,8 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let source = Source { file: args.file.clone(), layout: args.raw.layout() };
     let mut commands: Vec<Command> = vec![Edit::Warp(args.warp).into()];
     commands.extend(args.tf.clone().map(Command::Preset));
-    let mut company = Company::default();
-    company.record = args.record.as_deref().map(Record::begin).transpose()?;
+    let record = args.record.as_deref().map(Record::begin).transpose()?;
+    let mut company = Company { mirror: None, record };
     let recording = args.replay.as_deref().map(read_recording).transpose()?;
     let scale = if args.life_size { Scale::True } else { Scale::Human };
     let opening = |(session, arrived): (Session, _), stand| Opening {
@@ -123,10 +123,10 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         HeadsetName::None => {
             let gpu = Arc::new(Gpu::open_best()?);
             let loaded = open(source, &gpu)?;
-            let (played, stand) = played(recording, &loaded.1);
+            let (recording, stand) = played(recording, &loaded.1)?;
             let display = Display::default();
             let size = spec::picture_size(EYE).map_err(Failure::input)?;
-            let mut headset = Replay::new(gpu, played, display, size)?;
+            let mut headset = Replay::new(gpu, recording, display, size)?;
             show(&mut headset, opening(loaded, stand), &mut company)?
         }
         HeadsetName::Openxr => {
@@ -136,8 +136,10 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
                 company.mirror = mirror(&connected);
             }
             let headset = OpenXr::begin(connected)?;
-            match recording.map(Played::Recording) {
-                Some(played) => show(&mut Guided::new(headset, played), opening(loaded, None), &mut company)?,
+            match recording {
+                Some(recording) => {
+                    show(&mut Guided::new(headset, recording), opening(loaded, None), &mut company)?
+                }
                 None => show(&mut { headset }, opening(loaded, None), &mut company)?,
             }
         }
@@ -176,16 +178,19 @@ pub(super) fn open(source: Source, gpu: &Arc<Gpu>) -> Result<(Session, (Box<Arri
 pub(super) fn played(
     recording: Option<Recording>,
     (arrived, showing): &(Box<Arrived>, Showing),
-) -> (Played, Option<Stand>) {
-    match recording {
-        Some(recording) => (Played::Recording(recording), None),
+) -> Result<(Recording, Option<Stand>), Failure> {
+    Ok(match recording {
+        Some(recording) => (recording, None),
         None => {
             let up = showing.state.look.up.direction();
             let demonstration = Demonstration::new(&arrived.facts.grid, up);
             let stand = *demonstration.stand();
-            (Played::Demonstration(demonstration), Some(stand))
+            let recording = demonstration
+                .recording(Display::default())
+                .map_err(|error| Failure::Internal(error.into()))?;
+            (recording, Some(stand))
         }
-    }
+    })
 }
 
 pub(super) fn read_recording(path: &Path) -> Result<Recording, Failure> {
@@ -199,7 +204,6 @@ pub(super) fn checked_transfer(text: &str) -> Result<String, String> {
 }
 
 /// A mirror and a recording, if they are wanted.
-#[derive(Default)]
 struct Company {
     mirror: Option<Mirror>,
     record: Option<Record>,

@@ -6,35 +6,20 @@ use crate::viewer::canvas;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wheatstone_core::head::Display;
-use wheatstone_core::headset::{Demonstration, Eye, Recording, Side, Tick};
+use wheatstone_core::headset::{Eye, Recording, Side, Tick};
 use wheatstone_render::Gpu;
 
-/// What is played.
-#[derive(Debug)]
-pub(crate) enum Played {
-    Demonstration(Demonstration),
-    Recording(Recording),
-}
-
-impl Played {
-    /// What eyes and hands do so many seconds after the beginning; nothing any more after the end.
-    pub(crate) fn tick_at(&self, time_s: f64, period_s: f64) -> Option<Tick> {
-        let tick = match self {
-            Self::Demonstration(demonstration) => (time_s <= demonstration.duration_s() + period_s)
-                .then(|| demonstration.tick_at(time_s, period_s))?,
-            Self::Recording(recording) => {
-                let first_s = recording.ticks()[0].display_time_s;
-                recording.tick_at(first_s + time_s)?
-            }
-        };
-        Some(Tick { display_time_s: time_s, period_s, ..tick })
-    }
+/// What eyes and hands do so many seconds after the beginning of a recording; nothing any more after its end.
+fn tick_at(recording: &Recording, time_s: f64, period_s: f64) -> Option<Tick> {
+    let first_s = recording.ticks().first()?.display_time_s;
+    let tick = recording.tick_at(first_s + time_s)?;
+    Some(Tick { display_time_s: time_s, period_s, ..tick })
 }
 
 /// Refreshes come when the clock says so; those that are not drawn for in time are left out, as a headset's are.
 pub(crate) struct Replay {
     gpu: Arc<Gpu>,
-    played: Played,
+    recording: Recording,
     display: Display,
     eyes: [wgpu::Texture; 2],
     /// Of refresh 0; none before the first.
@@ -47,13 +32,13 @@ impl Replay {
     /// With pictures of some pixels for each eye.
     pub(crate) fn new(
         gpu: Arc<Gpu>,
-        played: Played,
+        recording: Recording,
         display: Display,
         size: [u32; 2],
     ) -> Result<Self, Failure> {
         let eye = || canvas::texture(&gpu, size, wgpu::TextureFormat::Rgba8Unorm);
         let eyes = [eye()?, eye()?];
-        Ok(Self { played, display, eyes, begun: None, next: 0, gpu })
+        Ok(Self { recording, display, eyes, begun: None, next: 0, gpu })
     }
 }
 
@@ -84,7 +69,7 @@ impl Headset for Replay {
         let now_s = begun.elapsed().as_secs_f64();
         let refresh = self.next.max((now_s / period_s).floor() as u64);
         self.next = refresh + 1;
-        let Some(tick) = self.played.tick_at(self.display.refresh_s(refresh), period_s) else {
+        let Some(tick) = tick_at(&self.recording, self.display.refresh_s(refresh), period_s) else {
             return Ok(Moment::Ended("the recording is over".to_owned()));
         };
         let wait_s = self.display.refresh_s(refresh) - now_s;
@@ -110,14 +95,14 @@ impl Headset for Replay {
 /// A headset of which eyes and hands do what was recorded; frusta and refreshes stay its own.
 pub(crate) struct Guided<H> {
     headset: H,
-    played: Played,
+    recording: Recording,
     /// Display time of the first refresh, seconds.
     first_s: Option<f64>,
 }
 
 impl<H> Guided<H> {
-    pub(crate) fn new(headset: H, played: Played) -> Self {
-        Self { headset, played, first_s: None }
+    pub(crate) fn new(headset: H, recording: Recording) -> Self {
+        Self { headset, recording, first_s: None }
     }
 }
 
@@ -142,12 +127,12 @@ impl<H: Headset> Headset for Guided<H> {
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
     ) -> Result<Moment, Failure> {
-        let Self { headset, played, first_s } = self;
+        let Self { headset, recording, first_s } = self;
         let mut is_over = false;
         let moment = headset.refresh(&mut |sight| {
             let own = *sight.tick();
             let time_s = own.display_time_s - *first_s.get_or_insert(own.display_time_s);
-            match played.tick_at(time_s, own.period_s) {
+            match tick_at(recording, time_s, own.period_s) {
                 Some(recorded) => draw(&mut Guide { sight, tick: guided(&own, &recorded) }),
                 None => {
                     is_over = true;
