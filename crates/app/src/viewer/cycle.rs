@@ -4,7 +4,7 @@ use super::canvas::{Canvas, Sheet, texture, write_texture};
 use super::capture::{Capture, Subject};
 use super::casting::{Casting, seen, views};
 use super::command::Command;
-use super::eyes::{Eyes, Wanted};
+use super::eyes::{BeyondReach, Eyes, Wanted};
 use super::report::Report;
 use super::screen::{Panels, Pictures, Screen};
 use super::script::{Due, Happening, Player, Status};
@@ -70,7 +70,7 @@ impl Viewer {
         Ok(Self {
             casting: Casting::new(&gpu)?,
             screen: Screen::new(&gpu, canvas.format()),
-            eyes: Eyes::new(&gpu)?,
+            eyes: Eyes::new(&gpu)?.beyond_reach(BeyondReach::AsItIs),
             format: canvas.format(),
             desk: Desk::new(),
             timings: Timings::default(),

@@ -47,9 +47,10 @@ const SESSION: &str = r#"
 fn play(script: &str, flags: &[&str], display: Option<&Xvfb>) -> (Bench, Run) {
     let bench = Bench::new();
     std::fs::write(bench.path("session.jsonl"), script).unwrap();
-    let args = ["view", "sphere.nrrd", "--script", "session.jsonl", "--size", "640x360", "--json"];
+    let args = ["view", "sphere.nrrd", "--script", "session.jsonl", "--json"];
+    let size: &[&str] = if flags.contains(&"--size") { &[] } else { &["--size", "640x360"] };
     let display = display.map_or("", |xvfb| &xvfb.display);
-    let run = bench.run_in(&[&args, flags].concat(), &[("DISPLAY", display), ("WAYLAND_DISPLAY", "")]);
+    let run = bench.run_in(&[&args, size, flags].concat(), &[("DISPLAY", display), ("WAYLAND_DISPLAY", "")]);
     (bench, run)
 }
 
@@ -109,6 +110,48 @@ fn the_same_session_without_quit_ends_without_a_window() {
     if needs_adapter() {
         let (bench, run) = play(&SESSION.replace("{\"do\": \"quit\"}", ""), &["--headless"], None);
         assert_session(&bench, &run);
+    }
+}
+
+/// Lit pixels in the middle of a screenshot, where no messages are.
+fn lit_in_the_middle(bench: &Bench, name: &str) -> usize {
+    let shot = picture(bench, name);
+    let (width, height) = shot.dimensions();
+    lit(&image::imageops::crop_imm(&shot, width / 3, 0, width / 3, height).to_image())
+}
+
+#[test]
+fn after_a_leap_of_the_eye_the_picture_is_neither_blank_nor_torn() {
+    if !needs_adapter() {
+        return;
+    }
+    const LEAPS: &str = r#"
+{"do": {"preset": "ramp:0.2..0.6"}}
+{"press": "H"}
+{"do": {"face": "back"}}
+{"wait_for": "rest"}
+{"do": {"screenshot": "rest.png"}}
+{"do": {"face": "right"}}
+{"do": {"screenshot": "right.png"}}
+{"wait_for": "rest"}
+{"do": {"face": "left"}}
+{"do": {"screenshot": "left.png"}}
+{"wait_for": "rest"}
+{"do": {"orbit": {"right_deg": 60, "up_deg": 0}}}
+{"do": {"screenshot": "aslant.png"}}
+"#;
+    for warp in ["quad", "grid", "volumetric"] {
+        let script = format!(
+            "{{\"wait_for\": \"rest\"}}\n{{\"do\": {{\"warp\": \"{warp}\"}}}}\n{{\"wait_for\": \"rest\"}}{LEAPS}"
+        );
+        let (bench, run) = play(&script, &["--headless", "--size", "480x260"], None);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let at_rest = lit_in_the_middle(&bench, "rest.png");
+        assert!(at_rest > 3000, "{at_rest}");
+        for name in ["right.png", "left.png", "aslant.png"] {
+            let lit = lit_in_the_middle(&bench, name);
+            assert!(10 * lit > 9 * at_rest, "{warp}, {name}: {lit} of {at_rest}");
+        }
     }
 }
 
