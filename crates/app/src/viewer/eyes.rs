@@ -5,7 +5,7 @@ use super::state::WarpName;
 use crate::failure::Failure;
 use glam::DVec3;
 use wheatstone_core::budget::Quality;
-use wheatstone_core::view::{Projection, View};
+use wheatstone_core::view::{Frustum, Projection, View};
 use wheatstone_core::warp::{GridSettings, Overlap, WarpError};
 use wheatstone_render::Gpu;
 use wheatstone_render::live::Front;
@@ -130,6 +130,19 @@ fn is_within_reach(overlap: Overlap, warp: WarpName) -> bool {
     overlap.turn_rad.to_degrees() <= furthest_deg && overlap.share >= LEAST_SHARE
 }
 
+/// What a picture of the shape of the wanted one shows of the shown view, in its middle and neither squeezed nor stretched.
+fn as_it_is(shown: &View, wanted: &View, quality: Quality) -> View {
+    let projection = match (shown.projection, wanted.projection) {
+        (Projection::Perspective(from), Projection::Perspective(to)) => {
+            let half_width = 0.5 * (from.up - from.down) * (to.right - to.left) / (to.up - to.down);
+            let middle = 0.5 * (from.left + from.right);
+            Projection::Perspective(Frustum { left: middle - half_width, right: middle + half_width, ..from })
+        }
+        (projection, _) => projection,
+    };
+    View { projection, size: quality.size(wanted.size), ..*shown }
+}
+
 fn eye_m(view: &View) -> DVec3 {
     view.view_from_world.inverse().translation
 }
@@ -190,7 +203,7 @@ impl Eyes {
             let shown = Shown::new(target, cast_from, front.prepared());
             let way = means.way(&cast_from, &view, wanted.warp);
             let view = match way {
-                Way::AsItIs => cast_from,
+                Way::AsItIs => as_it_is(&cast_from, &view, means.quality),
                 Way::Quad(quality) | Way::Grid(quality) | Way::Volumetric(quality) => {
                     View { size: quality.size(view.size), ..view }
                 }
@@ -308,6 +321,22 @@ mod tests {
         let turned = after(&[Edit::Turn { right_deg: 15.0, up_deg: 5.0 }]);
         let way = means(BeyondReach::AsItIs).way(&after(&[]), &turned, WarpName::Quad);
         assert_eq!(way, Way::Quad(Quality::FULL));
+    }
+
+    #[test]
+    fn a_picture_of_another_shape_is_neither_squeezed_nor_moved() {
+        let mut state = State::default();
+        let view = |state: &State, size| state.camera.view(size).unwrap();
+        let mono = view(&state, [480, 260]);
+        state.apply(&Edit::Orbit { right_deg: 90.0, up_deg: 0.0 }).unwrap();
+        let shown_in_half = as_it_is(&mono, &view(&state, [240, 260]), Quality::FULL);
+        assert_eq!(shown_in_half.size, [240, 260]);
+        for point in [DVec3::ZERO, DVec3::new(0.2, 0.1, 0.0), DVec3::new(-0.1, 0.3, 0.2)] {
+            let [before, now] = [mono, shown_in_half].map(|view| view.pixel_position(point).unwrap());
+            assert!((before - now).distance(glam::DVec2::new(120.0, 0.0)) < 1e-9, "{before} {now}");
+        }
+        let coarse = as_it_is(&mono, &view(&state, [480, 260]), Quality::at(3));
+        assert_eq!((coarse.size, coarse.projection), ([240, 130], mono.projection));
     }
 
     #[test]

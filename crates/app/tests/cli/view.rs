@@ -156,6 +156,29 @@ fn after_a_leap_of_the_eye_the_picture_is_neither_blank_nor_torn() {
 }
 
 #[test]
+fn a_ball_stays_round_while_the_eyes_are_parted() {
+    if !needs_adapter() {
+        return;
+    }
+    let script = r#"
+{"do": {"preset": "ramp:0.2..0.6"}}
+{"do": {"warp": "none"}}
+{"press": "H"}
+{"wait_for": "rest"}
+{"do": {"arrangement": "side_by_side"}}
+{"do": {"screenshot": "at-once.png"}}
+"#;
+    let (bench, run) = play(&format!("{{\"wait_for\": \"rest\"}}{script}"), &["--headless"], None);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let shot = picture(&bench, "at-once.png");
+    let right = image::imageops::crop_imm(&shot, 320, 0, 320, 360).to_image();
+    let is_lit = |x, y| right.get_pixel(x, y).0.iter().any(|&channel| channel > 60);
+    let columns = (0..320).filter(|&x| (0..360).any(|y| is_lit(x, y))).count();
+    let rows = (0..360).filter(|&y| (0..320).any(|x| is_lit(x, y))).count();
+    assert!(columns > 100 && columns.abs_diff(rows) < 10, "{columns}×{rows}");
+}
+
+#[test]
 fn without_a_display_the_error_says_what_to_do() {
     let (_, run) = play("{\"do\": \"quit\"}", &[], None);
     assert_eq!(run.code, 1);
