@@ -11,7 +11,7 @@ use super::script::{Due, Happening, Player, Status};
 use super::session::Session;
 use super::show::Area;
 use super::timings::{Frame, Timings};
-use super::ui::{Desk, Shown, dress};
+use super::ui::{Desk, Shown, dress, run_passes};
 use crate::failure::Failure;
 use crate::spec::clamped_side;
 use egui::{Context, PlatformOutput, RawInput, Rect, ViewportId};
@@ -222,9 +222,9 @@ impl Viewer {
         let Self { session, casting, desk, timings, report, context, .. } = self;
         let notes = session.notes.latest().to_vec();
         let quality = casting.described_quality();
-        let mut commands = Vec::new();
+        let mut has_asked = false;
         let mut area = Rect::NOTHING;
-        let output = context.run_ui(input, |ui| {
+        let output = run_passes(context, input, |ui| {
             let shown = Shown {
                 state: session.state(),
                 facts: session.facts(),
@@ -237,12 +237,12 @@ impl Viewer {
             };
             let pass = desk.show(ui, &shown);
             area = pass.picture;
-            commands.extend(pass.commands);
+            has_asked |= !pass.commands.is_empty();
+            pass.commands.iter().for_each(|command| session.perform(command));
         });
-        commands.iter().for_each(|command| session.perform(command));
         let delay =
             output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |out| out.repaint_delay);
-        let delay = if commands.is_empty() { delay } else { Duration::ZERO };
+        let delay = if has_asked { Duration::ZERO } else { delay };
         let delay = if notes.is_empty() { delay } else { delay.min(READ_NOTES) };
         self.repaint_at = Instant::now().checked_add(delay);
         (output, area)
