@@ -5,9 +5,11 @@ use crate::output::print_json;
 use crate::spec;
 use crate::viewer::{Opening, Player, Source, random_steps, read_steps, run_headless, run_window};
 use crate::volume_args::RawArgs;
+use anyhow::anyhow;
 use clap::Args;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use wheatstone_render::GpuError;
 
 /// Show a volume in a window: look around, edit its transfer function, cut it.
 #[derive(Debug, Args)]
@@ -61,13 +63,24 @@ pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
     let is_played = player.is_some();
     let source = Source { file: args.file.clone(), layout: args.raw.layout() };
     let opening = Opening { source, player, size: args.size, begun };
-    let report = if args.headless { run_headless(opening)? } else { run_window(opening)? };
+    let shown = if args.headless { run_headless(opening) } else { run_window(opening) };
+    let report = shown.map_err(with_way_out)?;
     if args.json {
         print_json(&report.to_json())?;
     }
     match report.failures.first() {
-        Some(failure) if is_played => Err(Failure::Internal(anyhow::anyhow!("{failure}"))),
+        Some(failure) if is_played => Err(Failure::Internal(anyhow!("{failure}"))),
         _ => Ok(()),
+    }
+}
+
+/// Without an adapter there is no window, but there are pictures.
+fn with_way_out(failure: Failure) -> Failure {
+    match failure {
+        Failure::Gpu(error @ GpuError::NoAdapter { .. }) => Failure::Internal(anyhow!(
+            "{error}, or make pictures without an adapter: `wheatstone render` casts them on the CPU"
+        )),
+        other => other,
     }
 }
 

@@ -515,6 +515,15 @@ fn without_an_adapter_auto_falls_back_and_gpu_fails() {
     let gpu = run(&[&render[..], &["gpu"]].concat());
     assert_eq!(gpu.code, 1, "{}", gpu.stderr);
     assert!(gpu.stderr.contains("error: no usable GPU adapter"), "{}", gpu.stderr);
+    std::fs::write(bench.path("end.jsonl"), "{\"do\": \"quit\"}").unwrap();
+    let view = run(&["view", "sphere.nrrd", "--headless", "--script", "end.jsonl"]);
+    assert_eq!(view.code, 1, "{}", view.stderr);
+    let says = |words| view.stderr.contains(words);
+    assert!(
+        says("no usable GPU adapter") && says("wheatstone render") && !says("backend"),
+        "{}",
+        view.stderr
+    );
     assert!(!bench.path("x.png").exists());
     let demo = run(&["demo", "-o", "d", "--size", "8x8"]);
     assert_eq!(demo.code, 0, "{}", demo.stderr);
