@@ -179,6 +179,32 @@ fn a_ball_stays_round_while_the_eyes_are_parted() {
 }
 
 #[test]
+fn keys_are_held_and_pressed_with_ctrl() {
+    if !needs_adapter() {
+        return;
+    }
+    let script = r#"
+{"wait_for": "rest"}
+{"do": {"save": "before.json"}}
+{"hold": {"key": "Right", "ms": 400}}
+{"press": "Ctrl+S"}
+{"press": "Ctrl+R"}
+{"wait_for": "rest"}
+{"press": "Ctrl+Q"}
+{"do": {"save": "after.json"}}
+"#;
+    let (bench, run) = play(script, &["--headless"], None);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let azimuth_deg = |name: &str| {
+        let text = std::fs::read_to_string(bench.path(name)).unwrap();
+        let view: serde_json::Value = serde_json::from_str(&text).unwrap();
+        view["camera"]["azimuth_deg"].as_f64().unwrap()
+    };
+    assert!(azimuth_deg("view.json") > azimuth_deg("before.json") + 2.0, "{}", azimuth_deg("view.json"));
+    assert!(!bench.path("after.json").exists(), "Ctrl Q ends the program");
+}
+
+#[test]
 fn without_a_display_the_error_says_what_to_do() {
     let (_, run) = play("{\"do\": \"quit\"}", &[], None);
     assert_eq!(run.code, 1);

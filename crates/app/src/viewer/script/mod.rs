@@ -1,5 +1,6 @@
 //! Events without a person: from a file, or random ones.
 
+mod chord;
 mod drag;
 mod player;
 mod random;
