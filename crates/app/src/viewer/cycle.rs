@@ -255,6 +255,8 @@ impl Viewer {
         let (arrangement, background) = (state.stereo.arrangement, state.look.background);
         let eyes = match (self.casting.front(), seen(state, area.size())) {
             (Some(front), Ok(views)) => {
+                let layering = state.pace.layers.layering().map_err(Failure::input)?;
+                self.eyes.step_by(layering.settings);
                 let wanted = Wanted { picture: self.casting.pictures(), views, warp: state.pace.warp };
                 self.eyes.show(&self.gpu, front, wanted)
             }

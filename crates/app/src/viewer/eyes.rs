@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use glam::DVec3;
 use wheatstone_core::budget::Quality;
 use wheatstone_core::view::{Frustum, Projection, View};
-use wheatstone_core::warp::{GridSettings, Overlap, WarpError};
+use wheatstone_core::warp::{GridSettings, Overlap, VolumetricSettings, WarpError};
 use wheatstone_render::Gpu;
 use wheatstone_render::live::Front;
 use wheatstone_render::warp::{Canvas, Shown, Warps};
@@ -40,6 +40,8 @@ pub(crate) struct Eyes {
     pictures: Vec<Canvas>,
     shown: Option<Wanted>,
     beyond_reach: BeyondReach,
+    /// How rays step through layers.
+    stepping: VolumetricSettings,
 }
 
 /// What tells one pair of pictures from another.
@@ -163,7 +165,21 @@ impl Eyes {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, Failure> {
         let warps = Warps::new(gpu, FORMAT)?;
         let beyond_reach = BeyondReach::Warped;
-        Ok(Self { warps, novel_views: None, pictures: Vec::new(), shown: None, beyond_reach })
+        Ok(Self {
+            warps,
+            novel_views: None,
+            pictures: Vec::new(),
+            shown: None,
+            beyond_reach,
+            stepping: VolumetricSettings::default(),
+        })
+    }
+
+    /// From now on rays step so through layers.
+    pub(crate) fn step_by(&mut self, stepping: VolumetricSettings) {
+        if self.stepping != stepping {
+            (self.stepping, self.shown) = (stepping, None);
+        }
     }
 
     /// The same with something else beyond the reach of warps.
@@ -215,9 +231,10 @@ impl Eyes {
                     self.warps.grid(gpu, &mut encoder, &shown, &view, GridSettings::default(), &mut into)
                 }
                 Way::Volumetric(_) => {
+                    let stepping = self.stepping;
                     let novel_views = self.novel_views(gpu)?;
                     novel_views.follow(gpu, &mut encoder, front, wanted.picture)?;
-                    novel_views.encode(gpu, &mut encoder, (source, &shown), &view, &mut into)
+                    novel_views.encode(gpu, &mut encoder, (source, &shown), &view, &stepping, &mut into)
                 }
             }
             .map_err(|error: WarpError| Failure::Internal(error.into()))?;

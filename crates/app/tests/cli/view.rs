@@ -78,7 +78,7 @@ fn assert_session(bench: &Bench, run: &Run) {
     assert!(middle.iter().any(|&channel| channel > 60), "the sphere is in the middle: {middle:?}");
     assert!(lit(&first) > 3000);
     let orbited = picture(bench, "orbited.png");
-    assert_ne!(first.as_raw(), orbited.as_raw());
+    assert!(first != orbited, "a drag orbits");
     assert_eq!(picture(bench, "clipped.png").dimensions(), (640, 360));
     let pair = picture(bench, "pair.png");
     let half = pair.width() / 2;
@@ -202,6 +202,48 @@ fn keys_are_held_and_pressed_with_ctrl() {
     };
     assert!(azimuth_deg("view.json") > azimuth_deg("before.json") + 2.0, "{}", azimuth_deg("view.json"));
     assert!(!bench.path("after.json").exists(), "Ctrl Q ends the program");
+}
+
+#[test]
+fn volumetric_warps_are_as_flags_and_scripts_say() {
+    let run = play("{\"do\": \"quit\"}", &["--headless", "--warp-thresholds", "0.5,0.2"], None).1;
+    assert!(run.code == 2 && run.stderr.contains("--warp-thresholds"), "{}", run.stderr);
+    let five = ["--headless", "--warp-thresholds", "0.1,0.2,0.3,0.4,0.5"];
+    let run = play("{\"do\": \"quit\"}", &five, None).1;
+    assert!(run.code == 2 && run.stderr.contains("5 layers"), "{}", run.stderr);
+    if !needs_adapter() {
+        return;
+    }
+    let script = r#"
+{"wait_for": "rest"}
+{"do": {"preset": "ramp:0.2..0.6"}}
+{"do": {"warp": "volumetric"}}
+{"press": "H"}
+{"wait_for": "rest"}
+{"do": {"save": "view.json"}}
+{"do": {"orbit": {"right_deg": 4, "up_deg": 0}}}
+{"do": {"screenshot": "few.png"}}
+{"wait_for": "rest"}
+{"do": {"orbit": {"right_deg": -4, "up_deg": 0}}}
+{"wait_for": "rest"}
+{"do": {"layers": {"thresholds": [0.5, 1.0], "steps": 64}}}
+{"wait_for": "rest"}
+{"do": {"orbit": {"right_deg": 4, "up_deg": 0}}}
+{"do": {"screenshot": "many.png"}}
+{"do": {"save": "again.json"}}
+"#;
+    let flags = ["--headless", "--size", "320x200", "--warp-thresholds", "0.5,1", "--warp-steps", "1"];
+    let (bench, run) = play(script, &flags, None);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let layers = |name: &str| {
+        let text = std::fs::read_to_string(bench.path(name)).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()["pace"]["layers"].clone()
+    };
+    assert_eq!(layers("view.json"), serde_json::json!({"thresholds": [0.5, 1.0], "steps": 1}));
+    assert_eq!(layers("again.json")["steps"], 64);
+    // Beside the messages.
+    let middle = |name: &str| image::imageops::crop_imm(&picture(&bench, name), 175, 0, 80, 200).to_image();
+    assert!(middle("few.png") != middle("many.png"), "other steps show other pictures");
 }
 
 #[test]
