@@ -38,5 +38,5 @@ pub use layers_error::LayersError;
 pub use leap::Leap;
 pub use renderer::{Prepared, Renderer, Sources};
 pub use stereo::{Form, LayerFormat, PairError, PairMethod, PairReport, Quality};
-pub use target::Target;
+pub use target::{LAYERS, Target};
 pub use volume::{GpuVolume, TexelFormat};

@@ -13,7 +13,7 @@ use wheatstone_core::view::PixelRect;
 const PIXEL_BYTES: u32 = 16;
 
 /// Layers of emission and absorption per pixel: as many as fit the vectors of shaders.
-pub(crate) const LAYERS: u32 = 4;
+pub const LAYERS: u32 = 4;
 
 /// Zeros that are copied at once: more than the longest row of a picture.
 const ZERO_BYTES: u64 = 1 << 20;

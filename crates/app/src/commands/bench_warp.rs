@@ -141,7 +141,8 @@ pub(crate) struct WarpBenchArgs {
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
 
-    /// Write the worst refresh of each row to this folder: what was displayed, the true render, and where they differ.
+    /// Write the refresh of each motion that is worst in the mean over the warps to this folder: what each warp displayed, the true
+    /// render, and where they differ.
     #[arg(long, value_name = "DIR")]
     error_pictures: Option<PathBuf>,
 

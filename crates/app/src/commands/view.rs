@@ -1,13 +1,17 @@
 //! `view`: a volume in a window.
 
 use crate::failure::Failure;
+use crate::layering::LayeringArgs;
 use crate::output::print_json;
 use crate::spec;
+use crate::viewer::state::{Edit, Layers};
 use crate::viewer::{Opening, Player, Source, random_steps, read_steps, run_headless, run_window};
 use crate::volume_args::RawArgs;
+use anyhow::anyhow;
 use clap::Args;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use wheatstone_render::GpuError;
 
 /// Show a volume in a window: look around, edit its transfer function, cut it.
 #[derive(Debug, Args)]
@@ -48,6 +52,9 @@ pub(crate) struct ViewArgs {
     json: bool,
 
     #[command(flatten)]
+    layering: LayeringArgs,
+
+    #[command(flatten)]
     raw: RawArgs,
 }
 
@@ -60,18 +67,35 @@ pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
     }
     let is_played = player.is_some();
     let source = Source { file: args.file.clone(), layout: args.raw.layout() };
-    let opening = Opening { source, player, size: args.size, begun };
-    let report = if args.headless { run_headless(opening)? } else { run_window(opening)? };
+    let opening = Opening { source, edits: args.edits()?, player, size: args.size, begun };
+    let shown = if args.headless { run_headless(opening) } else { run_window(opening) };
+    let report = shown.map_err(with_way_out)?;
     if args.json {
         print_json(&report.to_json())?;
     }
     match report.failures.first() {
-        Some(failure) if is_played => Err(Failure::Internal(anyhow::anyhow!("{failure}"))),
+        Some(failure) if is_played => Err(Failure::Internal(anyhow!("{failure}"))),
         _ => Ok(()),
     }
 }
 
+/// Without an adapter there is no window, but there are pictures.
+fn with_way_out(failure: Failure) -> Failure {
+    match failure {
+        Failure::Gpu(error @ GpuError::NoAdapter { .. }) => Failure::Internal(anyhow!(
+            "{error}, or make pictures without an adapter: `wheatstone render` casts them on the CPU"
+        )),
+        other => other,
+    }
+}
+
 impl ViewArgs {
+    /// What flags say of what is shown, whatever a saved view says.
+    fn edits(&self) -> Result<Vec<Edit>, Failure> {
+        let layers = Layers::from(&self.layering.resolve()?);
+        Ok(self.layering.is_given().then_some(Edit::Layers(layers)).into_iter().collect())
+    }
+
     fn player(&self) -> Result<Option<Player>, Failure> {
         Ok(match (&self.script, self.soak) {
             (Some(path), _) => Some(Player::new(read_steps(path)?.into_iter())),

@@ -3,6 +3,7 @@
 use super::loading::{Arrived, Skipping};
 use super::state::{Clip, EyeMethod, Look, State, Transfer, WarpName};
 use crate::failure::Failure;
+use crate::layering::Layering;
 use crate::look::ModeName;
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +14,6 @@ use wheatstone_core::scene::Placement;
 use wheatstone_core::skip::Structure;
 use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_core::volume::Grid;
-use wheatstone_core::warp::LayerThresholds;
 use wheatstone_render::live::{Activity, Front, LiveError, LiveView};
 use wheatstone_render::{Gpu, GpuError, GpuVolume, LayersError, Leap, Prepared, Renderer, Sources, Target};
 
@@ -50,7 +50,8 @@ struct Settings {
     look: Look,
     transfer: Transfer,
     clip: Clip,
-    keeps_layers: bool,
+    /// Opacities at which layers end; none without layers.
+    layers: Option<Vec<f32>>,
 }
 
 impl Settings {
@@ -61,7 +62,7 @@ impl Settings {
             look,
             transfer: state.transfer.clone(),
             clip: Clip { has_handles: false, ..state.clip },
-            keeps_layers: keeps_layers(state),
+            layers: keeps_layers(state).then(|| state.pace.layers.thresholds.clone()),
         }
     }
 }
@@ -118,7 +119,9 @@ impl Casting {
             scene.structure = structure;
             let Scene { grid, volume, skipping, .. } = &mut *scene;
             let prepared = prepare(gpu, renderer, (grid, volume), skipping.as_mut(), structure, state)?;
-            let sample_cost = |settings: &Settings| (settings.look.mode_and_shading(), settings.keeps_layers);
+            let sample_cost = |settings: &Settings| {
+                (settings.look.mode_and_shading(), settings.layers.as_ref().map(Vec::len))
+            };
             if sample_cost(&scene.settings) == sample_cost(&before) {
                 scene.live.supersede(prepared);
             } else {
@@ -243,7 +246,8 @@ fn prepare(
     if !keeps_layers(state) {
         return Ok(Arc::new(prepared));
     }
-    match renderer.with_layers(gpu, &prepared, &LayerThresholds::default()) {
+    let Layering { thresholds, .. } = state.pace.layers.layering().map_err(Failure::input)?;
+    match renderer.with_layers(gpu, &prepared, &thresholds) {
         Ok(layered) => Ok(Arc::new(layered)),
         Err(LayersError::Gpu(error)) => Err(Failure::Gpu(error)),
         Err(other) => Err(Failure::Internal(other.into())),

@@ -4,14 +4,14 @@ use super::canvas::{Canvas, Sheet, texture, write_texture};
 use super::capture::{Capture, Subject};
 use super::casting::{Casting, seen, views};
 use super::command::Command;
-use super::eyes::{Eyes, Wanted};
+use super::eyes::{BeyondReach, Eyes, Wanted};
 use super::report::Report;
 use super::screen::{Panels, Pictures, Screen};
 use super::script::{Due, Happening, Player, Status};
 use super::session::Session;
 use super::show::Area;
-use super::timings::{Frame, Timings};
-use super::ui::{Desk, Shown, dress};
+use super::timings::Timings;
+use super::ui::{Desk, Shown, dress, run_passes};
 use crate::failure::Failure;
 use crate::spec::clamped_side;
 use egui::{Context, PlatformOutput, RawInput, Rect, ViewportId};
@@ -41,8 +41,8 @@ pub(crate) struct Viewer {
     player: Option<Player>,
     timings: Timings,
     report: Report,
-    /// When the last refresh began, and what drawing took.
-    last: (Instant, Duration),
+    /// What drawing the last refresh took.
+    last_draw: Duration,
     /// Pictures that were complete when the last refresh was drawn.
     drawn_pictures: u64,
     /// When panels want to be drawn again.
@@ -70,12 +70,12 @@ impl Viewer {
         Ok(Self {
             casting: Casting::new(&gpu)?,
             screen: Screen::new(&gpu, canvas.format()),
-            eyes: Eyes::new(&gpu)?,
+            eyes: Eyes::new(&gpu)?.beyond_reach(BeyondReach::AsItIs),
             format: canvas.format(),
             desk: Desk::new(),
             timings: Timings::default(),
             report: Report::new(begun, device),
-            last: (begun, Duration::ZERO),
+            last_draw: Duration::ZERO,
             drawn_pictures: 0,
             repaint_at: Some(begun),
             gpu,
@@ -103,7 +103,8 @@ impl Viewer {
 
     /// Asks for a refresh: something has come in.
     pub(crate) fn touch(&mut self) {
-        self.repaint_at = Some(Instant::now());
+        let now = Instant::now();
+        self.repaint_at = Some(self.repaint_at.map_or(now, |at| at.min(now)));
     }
 
     /// When the next refresh or the next look after the cast is due; none as long as nothing comes in.
@@ -127,6 +128,7 @@ impl Viewer {
     /// Takes in events, draws, shows, and hands over work.
     pub(crate) fn refresh(&mut self, mut input: RawInput, canvas: &mut Canvas) -> Result<Refreshed, Failure> {
         let begun = Instant::now();
+        let wanted = self.refresh_at().map_or(begun, |at| at.min(begun));
         self.receive(canvas)?;
         let (due, resize) = self.play(begun, &mut input);
         let mut output = self.run_panels(input);
@@ -156,8 +158,8 @@ impl Viewer {
         self.capture(&pictures, &panels, size)?;
         self.screen.free(&panels);
         self.drawn_pictures = self.casting.pictures();
-        self.measure(begun);
-        let (whole, drawing) = (self.refresh_time(), self.last.1);
+        self.measure(wanted, begun);
+        let (whole, drawing) = (self.refresh_time(), self.last_draw);
         let budget = whole.saturating_sub(drawing).max(drawing.min(whole));
         let cast = self.casting.refresh(&self.gpu, budget);
         self.survive(cast)?;
@@ -222,9 +224,9 @@ impl Viewer {
         let Self { session, casting, desk, timings, report, context, .. } = self;
         let notes = session.notes.latest().to_vec();
         let quality = casting.described_quality();
-        let mut commands = Vec::new();
+        let mut has_asked = false;
         let mut area = Rect::NOTHING;
-        let output = context.run_ui(input, |ui| {
+        let output = run_passes(context, input, |ui| {
             let shown = Shown {
                 state: session.state(),
                 facts: session.facts(),
@@ -237,12 +239,12 @@ impl Viewer {
             };
             let pass = desk.show(ui, &shown);
             area = pass.picture;
-            commands.extend(pass.commands);
+            has_asked |= !pass.commands.is_empty();
+            pass.commands.iter().for_each(|command| session.perform(command));
         });
-        commands.iter().for_each(|command| session.perform(command));
         let delay =
             output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |out| out.repaint_delay);
-        let delay = if commands.is_empty() { delay } else { Duration::ZERO };
+        let delay = if has_asked { Duration::ZERO } else { delay };
         let delay = if notes.is_empty() { delay } else { delay.min(READ_NOTES) };
         self.repaint_at = Instant::now().checked_add(delay);
         (output, area)
@@ -253,6 +255,8 @@ impl Viewer {
         let (arrangement, background) = (state.stereo.arrangement, state.look.background);
         let eyes = match (self.casting.front(), seen(state, area.size())) {
             (Some(front), Ok(views)) => {
+                let layering = state.pace.layers.layering().map_err(Failure::input)?;
+                self.eyes.step_by(layering.settings);
                 let wanted = Wanted { picture: self.casting.pictures(), views, warp: state.pace.warp };
                 self.eyes.show(&self.gpu, front, wanted)
             }
@@ -302,13 +306,10 @@ impl Viewer {
         write_texture(gpu, &texture, &capture.path)
     }
 
-    fn measure(&mut self, begun: Instant) {
-        let total = begun.saturating_duration_since(self.last.0);
-        let milliseconds = |duration: Duration| duration.as_secs_f32() * 1e3;
-        let draw = begun.elapsed();
-        self.timings.push(Frame { total_ms: milliseconds(total), draw_ms: milliseconds(draw) });
-        self.report.refreshes.push(draw);
-        self.last = (begun, draw);
+    fn measure(&mut self, wanted: Instant, begun: Instant) {
+        self.last_draw = begun.elapsed();
+        self.timings.note(wanted, begun, self.last_draw, self.refresh_time());
+        self.report.refreshes.push(self.last_draw);
     }
 
     fn refresh_time(&self) -> Duration {

@@ -21,12 +21,12 @@ const NAP: Duration = Duration::from_millis(5);
 
 /// Plays the script to its end.
 pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
-    let Opening { source, player, size, begun } = opening;
+    let Opening { source, edits, player, size, begun } = opening;
     let player = player.map(Player::then_quit);
     let has_news = Arc::new(AtomicBool::new(false));
     let news = Arc::clone(&has_news);
     let wake: Waker = Arc::new(move || news.store(true, Ordering::Release));
-    let session = Session::begin(source, wake, Uploads::Beside)?;
+    let session = Session::begin(source, wake, Uploads::Beside)?.edited(&edits)?;
     let gpu = Arc::new(Gpu::open_best()?);
     let mut canvas = Canvas::offscreen(&gpu, size)?;
     let mut viewer = Viewer::new(gpu, session, player, Context::default(), &canvas, begun)?;

@@ -39,6 +39,8 @@ use std::time::Instant;
 /// What a run of the viewer begins with.
 pub(crate) struct Opening {
     pub(crate) source: Source,
+    /// Of what is shown, a saved view included.
+    pub(crate) edits: Vec<state::Edit>,
     /// Events instead of a person's, if there are any.
     pub(crate) player: Option<Player>,
     /// Width and height of the window, points.

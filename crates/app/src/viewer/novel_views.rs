@@ -55,10 +55,11 @@ impl NovelViews {
         encoder: &mut wgpu::CommandEncoder,
         (index, shown): (usize, &Shown<'_>),
         wanted: &View,
+        settings: &VolumetricSettings,
         into: &mut Canvas,
     ) -> Result<(), WarpError> {
         let depths = self.depths.get(index).ok_or(WarpError::NoLayers)?;
-        self.warps.encode(gpu, encoder, shown, depths, wanted, &VolumetricSettings::default(), into)
+        self.warps.encode(gpu, encoder, shown, depths, wanted, settings, into)
     }
 }
 

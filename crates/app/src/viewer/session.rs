@@ -79,6 +79,15 @@ impl Session {
         Ok(session)
     }
 
+    /// Begins with some edits of what is shown, a saved view that is on its way included.
+    pub(crate) fn edited(mut self, edits: &[Edit]) -> Result<Self, Failure> {
+        let on_its_way = self.pending.as_mut().and_then(|pending| pending.view.as_mut());
+        for state in std::iter::once(&mut self.state).chain(on_its_way) {
+            edits.iter().try_for_each(|edit| state.apply(edit)).map_err(Failure::input)?;
+        }
+        Ok(self)
+    }
+
     /// What is shown.
     pub(crate) fn state(&self) -> &State {
         &self.state
@@ -300,6 +309,18 @@ mod tests {
         let source = Source { file: Some("missing.nrrd".into()), layout: None };
         let session = Session::begin(source, Arc::new(|| ()), Uploads::Beside).unwrap();
         assert!(session.pending.unwrap().source.file.unwrap().is_absolute());
+    }
+
+    #[test]
+    fn edits_at_the_beginning_hold_for_a_saved_view_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let view = folder.path().join("view.json");
+        std::fs::write(&view, State::default().to_json().unwrap()).unwrap();
+        let source = Source { file: Some(view), layout: None };
+        let session = Session::begin(source, Arc::new(|| ()), Uploads::Beside).unwrap();
+        let session = session.edited(&[Edit::Refresh(17.0)]).unwrap();
+        assert_eq!(session.state.pace.refresh_ms, 17.0);
+        assert_eq!(session.pending.unwrap().view.unwrap().pace.refresh_ms, 17.0);
     }
 
     #[test]

@@ -28,8 +28,8 @@ pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
     let event_loop = event_loop()?;
     let proxy = event_loop.create_proxy();
     let wake: Waker = Arc::new(move || drop(proxy.send_event(Wake)));
-    let Opening { source, player, size, begun } = opening;
-    let session = Session::begin(source, wake, Uploads::Beside)?;
+    let Opening { source, edits, player, size, begun } = opening;
+    let session = Session::begin(source, wake, Uploads::Beside)?.edited(&edits)?;
     let mut app = App { stage: Stage::Before(Some(Box::new(Before { session, player, size, begun }))) };
     event_loop.run_app(&mut app).context("the window's event loop")?;
     match app.stage {

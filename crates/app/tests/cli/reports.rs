@@ -364,7 +364,23 @@ fn bench_warp_traces_every_warp() {
         assert!((mean - mean_on_cpu).abs() < 1e-3, "{}: {mean} {mean_on_cpu}", row["warp"]);
     }
     assert_eq!(std::fs::read_dir(bench.path("plots")).unwrap().count(), 2);
-    assert_eq!(std::fs::read_dir(bench.path("errors")).unwrap().count(), 24);
+    let pictures: Vec<String> = std::fs::read_dir(bench.path("errors"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(pictures.len(), 24);
+    for motion in ["rotation", "translation"] {
+        let of_motion: Vec<_> = rows.iter().filter(|row| row["motion"] == motion).collect();
+        let off =
+            |refresh: usize| of_motion.iter().map(|row| row["trace"][refresh].as_f64().unwrap()).sum::<f64>();
+        let refreshes = of_motion[0]["trace"].as_array().unwrap().len();
+        let worst = (0..refreshes).max_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap();
+        let of_worst = pictures
+            .iter()
+            .filter(|name| name.contains(&format!("{motion}-")))
+            .all(|name| name.contains(&format!("-{worst}-")));
+        assert!(of_worst, "refresh {worst} for all warps of {motion}: {pictures:?}");
+    }
 }
 
 #[test]
@@ -515,6 +531,15 @@ fn without_an_adapter_auto_falls_back_and_gpu_fails() {
     let gpu = run(&[&render[..], &["gpu"]].concat());
     assert_eq!(gpu.code, 1, "{}", gpu.stderr);
     assert!(gpu.stderr.contains("error: no usable GPU adapter"), "{}", gpu.stderr);
+    std::fs::write(bench.path("end.jsonl"), "{\"do\": \"quit\"}").unwrap();
+    let view = run(&["view", "sphere.nrrd", "--headless", "--script", "end.jsonl"]);
+    assert_eq!(view.code, 1, "{}", view.stderr);
+    let says = |words| view.stderr.contains(words);
+    assert!(
+        says("no usable GPU adapter") && says("wheatstone render") && !says("backend"),
+        "{}",
+        view.stderr
+    );
     assert!(!bench.path("x.png").exists());
     let demo = run(&["demo", "-o", "d", "--size", "8x8"]);
     assert_eq!(demo.code, 0, "{}", demo.stderr);

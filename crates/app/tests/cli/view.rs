@@ -47,9 +47,10 @@ const SESSION: &str = r#"
 fn play(script: &str, flags: &[&str], display: Option<&Xvfb>) -> (Bench, Run) {
     let bench = Bench::new();
     std::fs::write(bench.path("session.jsonl"), script).unwrap();
-    let args = ["view", "sphere.nrrd", "--script", "session.jsonl", "--size", "640x360", "--json"];
+    let args = ["view", "sphere.nrrd", "--script", "session.jsonl", "--json"];
+    let size: &[&str] = if flags.contains(&"--size") { &[] } else { &["--size", "640x360"] };
     let display = display.map_or("", |xvfb| &xvfb.display);
-    let run = bench.run_in(&[&args, flags].concat(), &[("DISPLAY", display), ("WAYLAND_DISPLAY", "")]);
+    let run = bench.run_in(&[&args, size, flags].concat(), &[("DISPLAY", display), ("WAYLAND_DISPLAY", "")]);
     (bench, run)
 }
 
@@ -77,7 +78,7 @@ fn assert_session(bench: &Bench, run: &Run) {
     assert!(middle.iter().any(|&channel| channel > 60), "the sphere is in the middle: {middle:?}");
     assert!(lit(&first) > 3000);
     let orbited = picture(bench, "orbited.png");
-    assert_ne!(first.as_raw(), orbited.as_raw());
+    assert!(first != orbited, "a drag orbits");
     assert_eq!(picture(bench, "clipped.png").dimensions(), (640, 360));
     let pair = picture(bench, "pair.png");
     let half = pair.width() / 2;
@@ -110,6 +111,139 @@ fn the_same_session_without_quit_ends_without_a_window() {
         let (bench, run) = play(&SESSION.replace("{\"do\": \"quit\"}", ""), &["--headless"], None);
         assert_session(&bench, &run);
     }
+}
+
+/// Lit pixels in the middle of a screenshot, where no messages are.
+fn lit_in_the_middle(bench: &Bench, name: &str) -> usize {
+    let shot = picture(bench, name);
+    let (width, height) = shot.dimensions();
+    lit(&image::imageops::crop_imm(&shot, width / 3, 0, width / 3, height).to_image())
+}
+
+#[test]
+fn after_a_leap_of_the_eye_the_picture_is_neither_blank_nor_torn() {
+    if !needs_adapter() {
+        return;
+    }
+    const LEAPS: &str = r#"
+{"do": {"preset": "ramp:0.2..0.6"}}
+{"press": "H"}
+{"do": {"face": "back"}}
+{"wait_for": "rest"}
+{"do": {"screenshot": "rest.png"}}
+{"do": {"face": "right"}}
+{"do": {"screenshot": "right.png"}}
+{"wait_for": "rest"}
+{"do": {"face": "left"}}
+{"do": {"screenshot": "left.png"}}
+{"wait_for": "rest"}
+{"do": {"orbit": {"right_deg": 60, "up_deg": 0}}}
+{"do": {"screenshot": "aslant.png"}}
+"#;
+    for warp in ["quad", "grid", "volumetric"] {
+        let script = format!(
+            "{{\"wait_for\": \"rest\"}}\n{{\"do\": {{\"warp\": \"{warp}\"}}}}\n{{\"wait_for\": \"rest\"}}{LEAPS}"
+        );
+        let (bench, run) = play(&script, &["--headless", "--size", "480x260"], None);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let at_rest = lit_in_the_middle(&bench, "rest.png");
+        assert!(at_rest > 3000, "{at_rest}");
+        for name in ["right.png", "left.png", "aslant.png"] {
+            let lit = lit_in_the_middle(&bench, name);
+            assert!(10 * lit > 9 * at_rest, "{warp}, {name}: {lit} of {at_rest}");
+        }
+    }
+}
+
+#[test]
+fn a_ball_stays_round_while_the_eyes_are_parted() {
+    if !needs_adapter() {
+        return;
+    }
+    let script = r#"
+{"do": {"preset": "ramp:0.2..0.6"}}
+{"do": {"warp": "none"}}
+{"press": "H"}
+{"wait_for": "rest"}
+{"do": {"arrangement": "side_by_side"}}
+{"do": {"screenshot": "at-once.png"}}
+"#;
+    let (bench, run) = play(&format!("{{\"wait_for\": \"rest\"}}{script}"), &["--headless"], None);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let shot = picture(&bench, "at-once.png");
+    let right = image::imageops::crop_imm(&shot, 320, 0, 320, 360).to_image();
+    let is_lit = |x, y| right.get_pixel(x, y).0.iter().any(|&channel| channel > 60);
+    let columns = (0..320).filter(|&x| (0..360).any(|y| is_lit(x, y))).count();
+    let rows = (0..360).filter(|&y| (0..320).any(|x| is_lit(x, y))).count();
+    assert!(columns > 100 && columns.abs_diff(rows) < 10, "{columns}×{rows}");
+}
+
+#[test]
+fn keys_are_held_and_pressed_with_ctrl() {
+    if !needs_adapter() {
+        return;
+    }
+    let script = r#"
+{"wait_for": "rest"}
+{"do": {"save": "before.json"}}
+{"hold": {"key": "Right", "ms": 400}}
+{"press": "Ctrl+S"}
+{"press": "Ctrl+R"}
+{"wait_for": "rest"}
+{"press": "Ctrl+Q"}
+{"do": {"save": "after.json"}}
+"#;
+    let (bench, run) = play(script, &["--headless"], None);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let azimuth_deg = |name: &str| {
+        let text = std::fs::read_to_string(bench.path(name)).unwrap();
+        let view: serde_json::Value = serde_json::from_str(&text).unwrap();
+        view["camera"]["azimuth_deg"].as_f64().unwrap()
+    };
+    assert!(azimuth_deg("view.json") > azimuth_deg("before.json") + 2.0, "{}", azimuth_deg("view.json"));
+    assert!(!bench.path("after.json").exists(), "Ctrl Q ends the program");
+}
+
+#[test]
+fn volumetric_warps_are_as_flags_and_scripts_say() {
+    let run = play("{\"do\": \"quit\"}", &["--headless", "--warp-thresholds", "0.5,0.2"], None).1;
+    assert!(run.code == 2 && run.stderr.contains("--warp-thresholds"), "{}", run.stderr);
+    let five = ["--headless", "--warp-thresholds", "0.1,0.2,0.3,0.4,0.5"];
+    let run = play("{\"do\": \"quit\"}", &five, None).1;
+    assert!(run.code == 2 && run.stderr.contains("5 layers"), "{}", run.stderr);
+    if !needs_adapter() {
+        return;
+    }
+    let script = r#"
+{"wait_for": "rest"}
+{"do": {"preset": "ramp:0.2..0.6"}}
+{"do": {"warp": "volumetric"}}
+{"press": "H"}
+{"wait_for": "rest"}
+{"do": {"save": "view.json"}}
+{"do": {"orbit": {"right_deg": 4, "up_deg": 0}}}
+{"do": {"screenshot": "few.png"}}
+{"wait_for": "rest"}
+{"do": {"orbit": {"right_deg": -4, "up_deg": 0}}}
+{"wait_for": "rest"}
+{"do": {"layers": {"thresholds": [0.5, 1.0], "steps": 64}}}
+{"wait_for": "rest"}
+{"do": {"orbit": {"right_deg": 4, "up_deg": 0}}}
+{"do": {"screenshot": "many.png"}}
+{"do": {"save": "again.json"}}
+"#;
+    let flags = ["--headless", "--size", "320x200", "--warp-thresholds", "0.5,1", "--warp-steps", "1"];
+    let (bench, run) = play(script, &flags, None);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let layers = |name: &str| {
+        let text = std::fs::read_to_string(bench.path(name)).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()["pace"]["layers"].clone()
+    };
+    assert_eq!(layers("view.json"), serde_json::json!({"thresholds": [0.5, 1.0], "steps": 1}));
+    assert_eq!(layers("again.json")["steps"], 64);
+    // Beside the messages.
+    let middle = |name: &str| image::imageops::crop_imm(&picture(&bench, name), 175, 0, 80, 200).to_image();
+    assert!(middle("few.png") != middle("many.png"), "other steps show other pictures");
 }
 
 #[test]

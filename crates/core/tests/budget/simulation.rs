@@ -38,15 +38,16 @@ impl Outcome {
     }
 }
 
-/// Casts with a schedule; times of a batch are known `latency` refreshes later.
+/// Casts with a schedule that may miss a share of refreshes; times of a batch are known `latency` refreshes later.
 pub(crate) fn simulate(
-    workload: &mut Workload,
+    workload: &mut Workload<'_>,
     predictor: Predictor,
+    tolerated: f64,
     latency: usize,
     refreshes: u32,
 ) -> Outcome {
     let request = |refresh: u32| ViewRequest::new(refresh, workload.grid(), 1.0).unwrap();
-    let mut schedule = CastSchedule::new(request(0), predictor);
+    let mut schedule = CastSchedule::new(request(0), predictor).tolerating(tolerated);
     let requests: Vec<_> = (0..refreshes).map(request).collect();
     let mut outcome = Outcome::default();
     let mut waiting = VecDeque::new();
@@ -69,7 +70,7 @@ pub(crate) fn simulate(
 }
 
 /// Casts what an oracle knows to fit, by the same rules.
-pub(crate) fn simulate_oracle(workload: &mut Workload, refreshes: u32) -> Outcome {
+pub(crate) fn simulate_oracle(workload: &mut Workload<'_>, refreshes: u32) -> Outcome {
     let order = workload.grid().order();
     let mut outcome = Outcome::default();
     let mut left_s: Vec<f64> = vec![];

@@ -5,23 +5,25 @@ use wheatstone_core::budget::CellGrid;
 /// Share by which a cell's cost differs from one cast to the next.
 const NOISE: f64 = 0.3;
 
-/// Balls that move through a picture. A cell costs a little by itself and the chords of its rays through the balls.
-pub(crate) struct Workload {
+/// How cells' costs compare with each other.
+pub(crate) trait Model {
+    /// Of a cell of a picture as of a time in seconds, in any unit.
+    fn cost(&self, grid: &CellGrid, cell: usize, at_s: f64) -> f64;
+}
+
+/// Costs of a model that add up to a view's, and scatter.
+pub(crate) struct Workload<'m> {
     grid: CellGrid,
-    seconds_per_chord: f64,
-    /// Picture heights that the balls move through in a second.
-    speed: f64,
+    model: &'m dyn Model,
+    seconds_per_cost: f64,
     random: u64,
 }
 
-/// Rays of a cell along either axis.
-const PROBES: usize = 4;
-
-impl Workload {
+impl<'m> Workload<'m> {
     /// The whole picture costs `view_s` seconds at time 0, before noise.
-    pub(crate) fn new(grid: CellGrid, view_s: f64, speed: f64, seed: u64) -> Self {
-        let mut workload = Self { grid, seconds_per_chord: 1.0, speed, random: seed };
-        workload.seconds_per_chord = view_s / workload.costs_s(0.0).iter().sum::<f64>();
+    pub(crate) fn new(grid: CellGrid, view_s: f64, model: &'m dyn Model, seed: u64) -> Self {
+        let mut workload = Self { grid, model, seconds_per_cost: 1.0, random: seed };
+        workload.seconds_per_cost = view_s / workload.costs_s(0.0).iter().sum::<f64>();
         workload
     }
 
@@ -31,7 +33,8 @@ impl Workload {
 
     /// Costs without noise of all cells of a picture as of a time, seconds.
     pub(crate) fn costs_s(&self, at_s: f64) -> Vec<f64> {
-        (0..self.grid.cells()).map(|cell| self.seconds_per_chord * (0.03 + self.chord(cell, at_s))).collect()
+        let cost_s = |cell| self.seconds_per_cost * self.model.cost(&self.grid, cell, at_s);
+        (0..self.grid.cells()).map(cost_s).collect()
     }
 
     /// A factor about 1, different each time.
@@ -44,9 +47,20 @@ impl Workload {
         let unit = ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
         1.0 + NOISE * (2.0 * unit - 1.0)
     }
+}
 
-    fn chord(&self, cell: usize, at_s: f64) -> f64 {
-        let [columns, rows] = self.grid.dims();
+/// Balls that move through a picture. A cell costs a little by itself and the chords of its rays through the balls.
+pub(crate) struct Balls {
+    /// Picture heights that the balls move through in a second.
+    pub(crate) speed: f64,
+}
+
+/// Rays of a cell along either axis.
+const PROBES: usize = 4;
+
+impl Model for Balls {
+    fn cost(&self, grid: &CellGrid, cell: usize, at_s: f64) -> f64 {
+        let [columns, rows] = grid.dims();
         let phase = self.speed * at_s;
         // Centre x, y and radius in picture heights.
         let balls = [
@@ -65,6 +79,6 @@ impl Workload {
                 sum += radius * (1.0 - off).max(0.0).sqrt();
             }
         }
-        sum / (PROBES * PROBES) as f64
+        0.03 + sum / (PROBES * PROBES) as f64
     }
 }

@@ -7,7 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum GpuError {
     /// No adapter was found or accepted.
-    #[error("no usable GPU adapter ({found} found): install a Vulkan driver, or use the CPU backend")]
+    #[error("no usable GPU adapter ({found} found): install a Vulkan driver, software Vulkan will do")]
     NoAdapter {
         /// Adapters found before any was refused.
         found: usize,

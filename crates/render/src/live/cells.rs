@@ -2,7 +2,7 @@
 
 use crate::pacer::BAND_ROWS;
 use crate::squares::Squares;
-use wheatstone_core::budget::{BudgetError, CellGrid};
+use wheatstone_core::budget::{BudgetError, CELLS_PER_REFRESH, CellGrid};
 
 /// How small and how large cells are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,13 +16,13 @@ pub(super) struct CellSizes {
 }
 
 impl CellSizes {
-    /// Software runs eight rays at a time and takes 0.15 ms for a cell without any. Hardware needs tens of thousands of rays
-    /// at a time to be busy.
+    /// Software runs eight rays at a time and takes 0.15 ms for a cell without any; where more refreshes may be missed, fewer cells do.
+    /// Hardware needs as many rays at a time as it has lanes to be busy.
     pub(super) fn of(is_software: bool) -> Self {
         if is_software {
             Self { smallest_side: 16, per_refresh: 30.0, shortest_s: 4e-4 }
         } else {
-            Self { smallest_side: 64, per_refresh: 10.0, shortest_s: 2e-4 }
+            Self { smallest_side: 32, per_refresh: CELLS_PER_REFRESH, shortest_s: 2e-4 }
         }
     }
 
@@ -88,6 +88,18 @@ mod tests {
             }
         }
         assert!(seen.iter().flatten().flatten().all(|&count| count == 1), "{seen:?}");
+    }
+
+    #[test]
+    fn a_refresh_holds_as_many_cells_as_it_should_while_a_view_takes_many() {
+        for (is_software, refresh_s) in [(false, 9.1e-3), (true, 38e-3)] {
+            let sizes = CellSizes::of(is_software);
+            for refreshes in [5.0, 10.0, 20.0] {
+                let side = sizes.side(1024.0 * 1024.0, refreshes * refresh_s, refresh_s);
+                let cells = RigCells::new([1024, 1024], 1, side).unwrap().grid().cells();
+                assert!(cells as f64 >= refreshes * sizes.per_refresh, "{is_software} {refreshes}: {cells}");
+            }
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The worst refresh of a trace in pictures (VR Fig. 19).
+//! The worst refresh of a motion in pictures, the same for each warp (VR Fig. 19).
 
 use super::trace::Trace;
 use crate::failure::Failure;

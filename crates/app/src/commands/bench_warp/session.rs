@@ -23,7 +23,7 @@ pub(super) struct Session<'a> {
     pub(super) like: &'a View,
     pub(super) refreshes: &'a [Refresh],
     pub(super) warps: &'a [WarpName],
-    /// Whether the pictures of the worst refresh are wanted.
+    /// Whether the pictures of the refresh that is worst for all warps together are wanted.
     pub(super) keeps_worst: bool,
 }
 
@@ -49,6 +49,7 @@ pub(super) fn run(
     let mut traces: Vec<Trace> = session.warps.iter().map(new_trace).collect();
     let mut displayed: Vec<Option<RgbImage>> = session.warps.iter().map(|_| None).collect();
     let mut picture = None;
+    let mut furthest_off = f64::NEG_INFINITY;
     for (number, refresh) in session.refreshes.iter().enumerate() {
         if picture != Some(refresh.picture) {
             camera.begin(refresh.cast_from.view(session.like))?;
@@ -57,6 +58,7 @@ pub(super) fn run(
         let wanted = refresh.eyes.view(session.like);
         let (truth, cast) = camera.cast(wanted)?;
         let truth = truth.over_background([0.0; 3]);
+        let mut maps = Vec::with_capacity(traces.len());
         for (trace, displayed) in traces.iter_mut().zip(&mut displayed) {
             let kept = displayed.take().filter(|_| refresh.is_missed);
             let picture = match kept {
@@ -68,8 +70,22 @@ pub(super) fn run(
                 }
             };
             trace.cast_ms.push(milliseconds(cast));
-            trace.compare(number, &picture, &truth, session.keeps_worst)?;
+            let ssim = SsimMap::new(&picture, &truth).context("the displayed picture")?;
+            trace.dssim.push(dssim(ssim.mean()));
+            maps.push(ssim);
             *displayed = Some(picture);
+        }
+        let off: f64 = maps.iter().map(|ssim| dssim(ssim.mean())).sum();
+        if session.keeps_worst && off > furthest_off {
+            furthest_off = off;
+            for ((trace, displayed), ssim) in traces.iter_mut().zip(&displayed).zip(maps) {
+                trace.worst = displayed.clone().map(|displayed| Worst {
+                    refresh: number,
+                    displayed,
+                    truth: truth.clone(),
+                    ssim,
+                });
+            }
         }
         bar.advance();
     }
@@ -80,22 +96,4 @@ pub(super) fn run(
 fn pose_off(refresh: &Refresh) -> [f64; 2] {
     let Refresh { eyes, cast_from, .. } = refresh;
     [eyes.angle_to_rad(cast_from).to_degrees(), 1e3 * eyes.distance_to_m(cast_from)]
-}
-
-impl Trace {
-    fn compare(
-        &mut self,
-        refresh: usize,
-        displayed: &RgbImage,
-        truth: &RgbImage,
-        keeps_worst: bool,
-    ) -> Result<(), Failure> {
-        let ssim = SsimMap::new(displayed, truth).context("the displayed picture")?;
-        let off = dssim(ssim.mean());
-        if keeps_worst && self.dssim.iter().all(|&before| before < off) {
-            self.worst = Some(Worst { refresh, displayed: displayed.clone(), truth: truth.clone(), ssim });
-        }
-        self.dssim.push(off);
-        Ok(())
-    }
 }

@@ -26,7 +26,7 @@ pub(super) struct Trace {
     pub(super) worst: Option<Worst>,
 }
 
-/// The refresh at which what is displayed is furthest off.
+/// The refresh of the motion at which what is displayed is furthest off in the mean over the warps.
 pub(super) struct Worst {
     pub(super) refresh: usize,
     pub(super) displayed: RgbImage,

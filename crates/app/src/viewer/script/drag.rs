@@ -35,7 +35,7 @@ pub(crate) enum Button {
 
 impl Drag {
     /// The events, and when each happens after the first.
-    pub(super) fn events(&self) -> Vec<(Duration, Event)> {
+    pub(crate) fn events(&self) -> Vec<(Duration, Event)> {
         let [from, to] = [self.from, self.to].map(Pos2::from);
         let modifiers = self.modifiers();
         let button = match self.button {

@@ -2,7 +2,7 @@
 
 use super::step::{Goal, Step};
 use crate::viewer::command::Command;
-use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, Vec2};
+use egui::{Event, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, Vec2};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -88,6 +88,12 @@ impl Player {
                 self.next = self.steps.next();
                 continue;
             }
+            let has_events = due.iter().any(|due| matches!(due.happening, Happening::Event(_)));
+            if has_events && !step.makes_events() {
+                // The panels take events in after all else that is due.
+                self.next = Some(step);
+                return Ok(due);
+            }
             let is_capture = matches!(step, Step::Do(Command::Screenshot(_)));
             self.begin(step);
             self.next = self.steps.next();
@@ -125,10 +131,17 @@ impl Player {
                 let all = std::iter::once(held).chain(events).chain([released]);
                 all.map(|(after, event)| (after, Happening::Event(event))).collect()
             }
-            Step::Press(name) => match Key::from_name(&name) {
-                Some(key) => at_once([true, false].map(|pressed| Happening::Event(press(key, pressed)))),
-                None => Vec::new(),
-            },
+            Step::Press(chord) => {
+                let [held, down] = chord.down().map(Happening::Event);
+                let [up, released] = chord.up().map(Happening::Event);
+                at_once([held, down, up, released])
+            }
+            Step::Hold { key, ms } => {
+                let after = |ms, events: [Event; 2]| {
+                    events.map(|event| (Duration::from_millis(ms), Happening::Event(event)))
+                };
+                [after(0, key.down()), after(ms, key.up())].concat()
+            }
             Step::Scroll { at, points } => at_once([
                 Happening::Event(Event::PointerMoved(at.into())),
                 Happening::Event(Event::MouseWheel {
@@ -150,6 +163,15 @@ impl Player {
     }
 }
 
+impl Step {
+    fn makes_events(&self) -> bool {
+        matches!(
+            self,
+            Self::Drag(_) | Self::Press(_) | Self::Hold { .. } | Self::Scroll { .. } | Self::WaitMs(_)
+        )
+    }
+}
+
 impl Goal {
     fn is_reached(self, status: Status) -> bool {
         match self {
@@ -163,12 +185,9 @@ fn at_once<const N: usize>(happenings: [Happening; N]) -> Vec<(Duration, Happeni
     happenings.into_iter().map(|happening| (Duration::ZERO, happening)).collect()
 }
 
-fn press(key: Key, pressed: bool) -> Event {
-    Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::chord::Chord;
     use super::*;
     use crate::viewer::state::Edit;
 
@@ -216,5 +235,28 @@ mod tests {
         assert_eq!(player.next_at(loading), Some(now + PATIENCE));
         assert!(player.due(now + PATIENCE + Duration::from_secs(1), loading).is_err());
         assert_eq!(player.due(now, READY).unwrap().len(), 1);
+    }
+
+    #[test]
+    fn a_key_is_held_for_as_long_as_is_said() {
+        let key = Chord::try_from("Shift+Right".to_owned()).unwrap();
+        let mut player = Player::new([Step::Hold { key, ms: 300 }].into_iter());
+        let begun = player.at;
+        let events = |due: Vec<Due>| due.into_iter().map(|due| due.happening).collect::<Vec<_>>();
+        assert_eq!(events(player.due(begun, READY).unwrap()), key.down().map(Happening::Event));
+        assert!(player.due(begun + Duration::from_millis(299), READY).unwrap().is_empty());
+        let up = player.due(begun + Duration::from_millis(300), READY).unwrap();
+        assert_eq!(events(up), key.up().map(Happening::Event));
+    }
+
+    #[test]
+    fn what_follows_events_is_done_after_them() {
+        let key = Chord::try_from("M".to_owned()).unwrap();
+        let mut player = Player::new([Step::Press(key), Step::Do(Command::Quit)].into_iter());
+        let now = player.at;
+        let due = player.due(now, READY).unwrap();
+        assert!(due.iter().all(|due| matches!(due.happening, Happening::Event(_))), "{due:?}");
+        assert_eq!(player.next_at(READY), Some(now));
+        assert_eq!(player.due(now, READY).unwrap()[0].happening, Happening::Command(Command::Quit));
     }
 }

@@ -1,17 +1,23 @@
 //! Random events: a soak test.
 
+use super::chord::Chord;
 use super::drag::{Button, Drag};
 use super::step::Step;
 use crate::look::ModeName;
 use crate::viewer::command::Command;
 use crate::viewer::state::{Arrangement, Edit, EyeMethod, Face, Plane, WarpName};
+use egui::Key;
 use fastrand::Rng;
 use glam::DVec3;
 use std::time::{Duration, Instant};
 use wheatstone_core::scene::Shading;
 
 /// Keys that are pressed.
-const KEYS: [&str; 10] = ["H", "H", "?", "M", "L", "C", "P", "X", "V", "Home"];
+const KEYS: [Key; 10] =
+    [Key::H, Key::H, Key::Questionmark, Key::M, Key::L, Key::C, Key::P, Key::X, Key::V, Key::Home];
+
+/// Keys that are held.
+const HELD: [Key; 6] = [Key::W, Key::S, Key::A, Key::E, Key::ArrowRight, Key::ArrowUp];
 
 /// Steps from a seed for some time, then the end.
 pub(crate) fn random_steps(seed: u64, duration: Duration) -> impl Iterator<Item = Step> + 'static {
@@ -31,7 +37,11 @@ fn step(rng: &mut Rng) -> Step {
     match rng.u32(0..20) {
         0..5 => Step::WaitMs(rng.u64(0..400)),
         5..10 => Step::Drag(drag(rng)),
-        10..12 => Step::Press(KEYS[rng.usize(0..KEYS.len())].to_owned()),
+        10 => Step::Press(Chord::plain(KEYS[rng.usize(0..KEYS.len())])),
+        11 => {
+            let key = Chord::plain(HELD[rng.usize(0..HELD.len())]);
+            Step::Hold { key, ms: rng.u64(0..600) }
+        }
         12 => Step::Scroll { at: place(rng), points: (rng.f32() - 0.5) * 200.0 },
         13 => Step::Resize([rng.u32(200..1200), rng.u32(150..900)]),
         _ => Step::Do(command(rng)),

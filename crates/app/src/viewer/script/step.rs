@@ -1,5 +1,6 @@
 //! The steps of a script, one JSON value each.
 
+use super::chord::Chord;
 use super::drag::Drag;
 use crate::failure::Failure;
 use crate::viewer::command::Command;
@@ -22,8 +23,10 @@ pub(crate) enum Step {
     Do(Command),
     /// Drags the mouse.
     Drag(Drag),
-    /// Presses a key, by its name or sign.
-    Press(String),
+    /// Presses a key and releases it at once.
+    Press(Chord),
+    /// Holds a key for some time.
+    Hold { key: Chord, ms: u64 },
     /// Turns the wheel by so many points at a place of the window (points).
     Scroll { at: [f32; 2], points: f32 },
     /// Drops a file.
@@ -50,13 +53,7 @@ pub(crate) fn read_steps(path: &Path) -> Result<Vec<Step>, Failure> {
 fn parse(text: &str) -> Result<Vec<Step>, String> {
     let is_step = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
     let step = |(number, line): (usize, &str)| {
-        let at_line = |error: &dyn std::fmt::Display| format!("line {}: {error}", number + 1);
-        match serde_json::from_str(line).map_err(|error| at_line(&error))? {
-            Step::Press(name) if egui::Key::from_name(&name).is_none() => {
-                Err(at_line(&format!("no key is called {name:?}")))
-            }
-            step => Ok(step),
-        }
+        serde_json::from_str(line).map_err(|error| format!("line {}: {error}", number + 1))
     };
     text.lines().enumerate().filter(|(_, line)| is_step(line)).map(step).collect()
 }
@@ -69,7 +66,7 @@ mod tests {
     #[test]
     fn a_script_is_a_step_a_line() {
         let steps = parse(
-            "# a comment\n{\"wait_for\": \"volume\"}\n\n{\"do\": {\"zoom\": 2.0}}\n{\"press\": \"?\"}\n\
+            "# a comment\n{\"wait_for\": \"volume\"}\n\n{\"do\": {\"zoom\": 2.0}}\n{\"press\": \"Ctrl+S\"}\n\
              {\"drag\": {\"from\": [10, 20], \"to\": [30, 40], \"ms\": 50}}\n{\"do\": \"quit\"}\n",
         )
         .unwrap();
@@ -80,7 +77,14 @@ mod tests {
 
     #[test]
     fn a_bad_line_is_named() {
-        for bad in ["{\"wait\": 5}", "{\"do\": {\"zoom\": \"x\"}}", "{\"press\": \"Any\"}", "{", "7"] {
+        for bad in [
+            "{\"hold\": {\"key\": \"Hyper\", \"ms\": 5}}",
+            "{\"wait\": 5}",
+            "{\"do\": {\"zoom\": \"x\"}}",
+            "{\"press\": \"Any\"}",
+            "{",
+            "7",
+        ] {
             let error = parse(&format!("{{\"wait_ms\": 5}}\n{bad}")).unwrap_err();
             assert!(error.starts_with("line 2:"), "{error}");
         }

@@ -1,7 +1,7 @@
 //! The one way to change a state.
 
 use super::look::shading_text;
-use super::{Arrangement, Camera, Clip, EyeMethod, Face, Plane, State, Transfer, WarpName};
+use super::{Arrangement, Camera, Clip, EyeMethod, Face, Layers, Plane, State, Transfer, WarpName};
 use crate::camera::Up;
 use crate::look::ModeName;
 use serde::{Deserialize, Serialize};
@@ -87,6 +87,8 @@ pub(crate) enum Edit {
     /// Between the eyes, metres.
     EyeDistance(f64),
     Warp(WarpName),
+    /// What volumetric warps keep, and how rays step through it.
+    Layers(Layers),
     /// Time from one refresh to the next, ms.
     Refresh(f64),
 }
@@ -129,6 +131,7 @@ impl Edit {
             Self::EyeMethod(method) => state.stereo.method = method,
             Self::EyeDistance(distance_m) => state.stereo.eye_distance_m = distance_m,
             Self::Warp(warp) => state.pace.warp = warp,
+            Self::Layers(ref layers) => state.pace.layers.clone_from(layers),
             Self::Refresh(refresh_ms) => state.pace.refresh_ms = refresh_ms,
         }
     }

@@ -13,7 +13,7 @@ pub(crate) use camera::{Camera, Face};
 pub(crate) use clip::{Clip, Plane};
 pub(crate) use edit::Edit;
 pub(crate) use look::Look;
-pub(crate) use pace::{Pace, WarpName};
+pub(crate) use pace::{Layers, Pace, WarpName};
 pub(crate) use stereo::{Arrangement, EyeMethod, Stereo};
 pub(crate) use transfer::Transfer;
 
@@ -192,7 +192,16 @@ mod tests {
         assert!(message("\"fov_y_deg\": 40.0", "\"fov_y_deg\": 400.0").contains("400"));
         assert!(message("directional:5", "directional:500").contains("directional"));
         assert!(message("0.125", "1.125").contains("opacity"));
+        assert!(message("\"steps\": 32", "\"steps\": 0").contains("steps"));
+        assert!(message("\"thresholds\": [", "\"thresholds\": [0.0001, ").contains("5 layers"));
         assert!(State::from_json("").is_err());
+    }
+
+    #[test]
+    fn views_saved_before_layers_were_have_the_default_ones() {
+        let mut view: serde_json::Value = serde_json::from_str(&edited().to_json().unwrap()).unwrap();
+        view["pace"].as_object_mut().unwrap().remove("layers").unwrap();
+        assert_eq!(State::from_json(&view.to_string()).unwrap(), edited());
     }
 
     #[test]

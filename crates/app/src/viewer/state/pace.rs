@@ -1,17 +1,58 @@
 //! How time is spent.
 
 use super::within;
+use crate::layering::Layering;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
+use wheatstone_core::warp::{LayerThresholds, VolumetricSettings};
+use wheatstone_render::{LAYERS, LayersError};
 
 /// What a refresh has time for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Pace {
     /// Time from one refresh to the next while something is being cast, ms.
     pub(crate) refresh_ms: f64,
     /// How the newest whole picture is shown from where the eye is now.
     pub(crate) warp: WarpName,
+    /// What volumetric warps keep, and how rays step through it.
+    #[serde(default)]
+    pub(crate) layers: Layers,
+}
+
+/// Layers of emission and absorption.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct Layers {
+    /// Opacities at which they end, ascending: as many as layers.
+    pub(crate) thresholds: Vec<f32>,
+    /// Most steps of a ray.
+    pub(crate) steps: u32,
+}
+
+impl Default for Layers {
+    fn default() -> Self {
+        Self::from(&Layering::default())
+    }
+}
+
+impl From<&Layering> for Layers {
+    fn from(Layering { thresholds, settings }: &Layering) -> Self {
+        Self { thresholds: thresholds.opacities().to_vec(), steps: settings.most_steps }
+    }
+}
+
+impl Layers {
+    /// What the casts and the warps take.
+    pub(crate) fn layering(&self) -> Result<Layering, String> {
+        let thresholds = LayerThresholds::new(&self.thresholds).map_err(|error| error.to_string())?;
+        if self.thresholds.len() > LAYERS as usize {
+            return Err(LayersError::Count(self.thresholds.len()).to_string());
+        }
+        let settings = VolumetricSettings { most_steps: self.steps, ..VolumetricSettings::default() };
+        settings.check().map_err(|error| error.to_string())?;
+        Ok(Layering { thresholds, settings })
+    }
 }
 
 /// How an old picture is shown from a new pose.
@@ -43,12 +84,13 @@ impl WarpName {
 
 impl Default for Pace {
     fn default() -> Self {
-        Self { refresh_ms: 40.0, warp: WarpName::Grid }
+        Self { refresh_ms: 40.0, warp: WarpName::Grid, layers: Layers::default() }
     }
 }
 
 impl Pace {
     pub(super) fn check(&self) -> Result<(), String> {
-        within("refresh_ms", self.refresh_ms, 1.0, 1000.0)
+        within("refresh_ms", self.refresh_ms, 1.0, 1000.0)?;
+        self.layers.layering().map(drop)
     }
 }

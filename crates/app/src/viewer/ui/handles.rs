@@ -3,7 +3,7 @@
 use super::projection::Projection;
 use super::theme::{ACCENT, LINE};
 use super::{Asked, Shown};
-use crate::viewer::state::{Arrangement, Edit, Plane, State};
+use crate::viewer::state::{Arrangement, Clip, Edit, Plane, State};
 use egui::{Color32, Painter, Pos2, Rect, Response, Stroke, Ui, Vec2};
 use glam::{DAffine3, DVec3};
 
@@ -33,13 +33,14 @@ enum Handle {
     Tip,
 }
 
-/// Shows the handles and follows one that is dragged; whether one is.
+/// Shows the handles and moves one that is dragged, move by move (points); whether one is.
 pub(super) fn show(
     grip: &mut Grip,
     ui: &Ui,
     area: Rect,
     shown: &Shown<'_>,
     picture: &Response,
+    moves: &[Vec2],
     asked: &mut Asked,
 ) -> bool {
     let clip = &shown.state.clip;
@@ -65,7 +66,7 @@ pub(super) fn show(
         let origin = ui.input(|input| input.pointer.press_origin());
         grip.0 = origin.and_then(|origin| nearest(&projections, &handles, origin));
     }
-    if !picture.dragged() {
+    if !picture.dragged() && !picture.drag_stopped() {
         grip.0 = None;
     }
     for (eye, projection) in projections.iter().enumerate() {
@@ -83,14 +84,15 @@ pub(super) fn show(
         }
     }
     let Some((eye, held)) = grip.0 else { return false };
-    let by = picture.drag_delta();
-    if let Some(projection) = projections.get(eye).filter(|_| by != Vec2::ZERO) {
-        let moved = match held {
-            Handle::Face(face) => drag_face(projection, world_from_texture, faces[face], face, by),
-            Handle::Foot => clip.plane.and_then(|plane| drag_foot(projection, plane, by)),
-            Handle::Tip => clip.plane.and_then(|plane| drag_tip(projection, plane, by)),
-        };
-        moved.into_iter().for_each(|edit| asked.edit(edit));
+    let mut state = shown.state.clone();
+    for (projection, &by) in
+        projections.get(eye).into_iter().flat_map(|eye| moves.iter().map(move |by| (eye, by)))
+    {
+        let moved = drag_handle(held, projection, world_from_texture, &state.clip, by);
+        // Each move goes on from where the one before has led.
+        if let Some(edit) = moved.filter(|edit| state.apply(edit).is_ok()) {
+            asked.edit(edit);
+        }
     }
     true
 }
@@ -135,6 +137,23 @@ fn foot_and_tip(plane: &Plane) -> [DVec3; 2] {
     let length_squared = plane.normal.length_squared().max(f64::MIN_POSITIVE);
     let foot = plane.normal * (plane.offset_m / length_squared);
     [foot, foot + plane.normal.normalize_or_zero() * NORMAL_M]
+}
+
+fn drag_handle(
+    handle: Handle,
+    projection: &Projection,
+    world_from_texture: DAffine3,
+    clip: &Clip,
+    by: Vec2,
+) -> Option<Edit> {
+    match handle {
+        Handle::Face(face) => {
+            let centre = face_centre(clip.box_lo, clip.box_hi, face);
+            drag_face(projection, world_from_texture, centre, face, by)
+        }
+        Handle::Foot => drag_foot(projection, clip.plane?, by),
+        Handle::Tip => drag_tip(projection, clip.plane?, by),
+    }
 }
 
 /// How far along a direction in the picture a drag goes, in lengths of the direction.

@@ -2,12 +2,14 @@
 
 mod camera;
 mod clip;
+mod drag;
 mod field;
 mod files;
 mod handles;
 mod keys;
 mod look;
 mod pace;
+mod passes;
 mod picture;
 mod pointer;
 mod projection;
@@ -16,6 +18,7 @@ mod theme;
 mod toasts;
 mod transfer;
 
+pub(crate) use passes::run_passes;
 pub(crate) use theme::{PANEL, dress};
 
 use super::command::Command;
@@ -55,6 +58,7 @@ pub(crate) struct Desk {
     files: files::Fields,
     transfer: transfer::Grip,
     handles: handles::Grip,
+    drag: drag::Follower,
 }
 
 /// What has come of a pass.
@@ -73,6 +77,7 @@ impl Desk {
             files: files::Fields::default(),
             transfer: transfer::Grip::default(),
             handles: handles::Grip::default(),
+            drag: drag::Follower::default(),
         }
     }
 
@@ -136,5 +141,132 @@ impl Asked {
 
     fn command(&mut self, command: Command) {
         self.commands.push(command);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::script::{Button, Drag};
+    use crate::viewer::state::Plane;
+    use egui::{Context, Event, Pos2, RawInput, Vec2};
+    use wheatstone_core::volume::Grid;
+
+    const SIZE: Vec2 = Vec2::new(800.0, 500.0);
+
+    /// What comes of events if so many come with each refresh, and where the picture is.
+    fn play(mut state: State, events: &[Event], per_refresh: usize) -> (State, Rect) {
+        let (context, mut desk, timings) = (Context::default(), Desk::new(), Timings::default());
+        let grid = Grid::centred([8, 8, 8], [1.0; 3]).unwrap();
+        let up = state.look.up.direction();
+        let placement = Placement::of_grid(&grid, wheatstone_core::view::world_from_patient(&grid, up));
+        let mut picture = Rect::NOTHING;
+        let mut refresh = |number: usize, events: &[Event]| {
+            let input = RawInput {
+                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, SIZE)),
+                time: Some(0.004 * number as f64),
+                focused: true,
+                events: events.to_vec(),
+                ..RawInput::default()
+            };
+            let output = run_passes(&context, input, |ui| {
+                let shown = Shown {
+                    state: &state,
+                    facts: None,
+                    placement: Some(placement),
+                    progress: None,
+                    notes: &[],
+                    timings: &timings,
+                    device: "",
+                    quality: "",
+                };
+                let pass = desk.show(ui, &shown);
+                picture = pass.picture;
+                for command in pass.commands {
+                    let Command::Edit(edit) = command else { panic!("{command:?}") };
+                    state.apply(&edit).unwrap();
+                }
+            });
+            output.drop_without_applying_deltas();
+        };
+        (0..3).for_each(|number| refresh(number, &[]));
+        events.chunks(per_refresh).enumerate().for_each(|(number, events)| refresh(3 + number, events));
+        (state, picture)
+    }
+
+    fn after(state: &State, events: &[Event], per_refresh: usize) -> State {
+        play(state.clone(), events, per_refresh).0
+    }
+
+    fn drag(from: [f32; 2], to: [f32; 2], button: Button, ctrl: bool) -> Vec<Event> {
+        let drag = Drag { from, to, ms: 400, button, shift: false, ctrl };
+        drag.events().into_iter().map(|(_, event)| event).collect()
+    }
+
+    fn assert_same_however_many_at_a_time(state: &State, events: &[Event]) -> State {
+        let one_by_one = after(state, events, 1);
+        assert_ne!(&one_by_one, state);
+        for per_refresh in [2, 5, 17, events.len()] {
+            assert_eq!(after(state, events, per_refresh), one_by_one, "{per_refresh} at a time");
+        }
+        one_by_one
+    }
+
+    #[test]
+    fn a_drag_counts_in_full_however_many_of_its_events_come_at_once() {
+        let state = State::default();
+        let events = drag([60.0, 150.0], [160.0, 200.0], Button::Left, false);
+        let orbited = assert_same_however_many_at_a_time(&state, &events);
+        // A picture's height is half a turn.
+        let turned_deg = orbited.camera.azimuth_deg - state.camera.azimuth_deg;
+        assert!((turned_deg + 180.0 * 100.0 / 500.0).abs() < 1e-4, "{turned_deg}");
+        let raised_deg = orbited.camera.elevation_deg - state.camera.elevation_deg;
+        assert!((raised_deg - 180.0 * 50.0 / 500.0).abs() < 1e-4, "{raised_deg}");
+        let events = drag([60.0, 150.0], [160.0, 150.0], Button::Left, true);
+        let windowed = assert_same_however_many_at_a_time(&state, &events);
+        assert_eq!(windowed.camera, state.camera);
+        let width = |state: &State| state.transfer.window[1] - state.transfer.window[0];
+        assert!((width(&windowed) / width(&state) - 0.4_f64.exp()).abs() < 1e-3);
+        assert_same_however_many_at_a_time(&state, &drag([60.0, 150.0], [90.0, 110.0], Button::Right, false));
+    }
+
+    #[test]
+    fn two_drags_at_once_are_two_drags() {
+        let state = State::default();
+        let mut events = drag([60.0, 150.0], [160.0, 200.0], Button::Left, false);
+        events.extend(drag([160.0, 200.0], [60.0, 150.0], Button::Left, false));
+        let there_and_back = after(&state, &events, events.len());
+        assert!((there_and_back.camera.azimuth_deg - state.camera.azimuth_deg).abs() < 1e-4);
+    }
+
+    #[test]
+    fn handles_follow_the_pointer_however_many_of_its_moves_come_at_once() {
+        let mut state = State::default();
+        state.apply(&Edit::ClipHandles(true)).unwrap();
+        state.apply(&Edit::ClipPlane(Some(Plane::default()))).unwrap();
+        let (_, area) = play(state.clone(), &[], 1);
+        let size = [area.width() as u32, area.height() as u32];
+        let eye = projection::Projection::new(state.camera.view(size).unwrap(), area);
+        // The patient is upright: the third axis points up.
+        let above = |state: &State| eye.place(glam::DVec3::Y * (state.clip.box_hi.z - 0.5)).unwrap();
+        let from = above(&state);
+        let events = drag(from.into(), (from + egui::vec2(5.0, 70.0)).into(), Button::Left, false);
+        let cut = assert_same_however_many_at_a_time(&state, &events);
+        assert!((above(&cut).y - from.y - 70.0).abs() < 2.0, "{:?} {from:?}", above(&cut));
+        let foot = eye.place(glam::DVec3::ZERO).unwrap();
+        let events = drag(foot.into(), (foot + egui::vec2(40.0, 10.0)).into(), Button::Left, false);
+        let moved = assert_same_however_many_at_a_time(&state, &events);
+        assert!(moved.camera == state.camera && moved.clip.plane != state.clip.plane);
+    }
+
+    #[test]
+    fn points_of_the_transfer_function_follow_the_pointer_however_many_of_its_moves_come_at_once() {
+        let state = State::default();
+        // The last point is at the right end of the graph, on top.
+        let events = |y: f32| drag([776.0, y], [740.0, y + 40.0], Button::Left, false);
+        let grips = |y: &f32| after(&state, &events(*y), 1).transfer != state.transfer;
+        let y = (60..200).map(|y| y as f32).find(grips).unwrap();
+        let moved = assert_same_however_many_at_a_time(&state, &events(y));
+        assert!(moved.transfer.opacity != state.transfer.opacity && moved.camera == state.camera);
     }
 }

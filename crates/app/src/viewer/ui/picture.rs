@@ -1,10 +1,11 @@
 //! The picture's area: mouse, keys that are held, dropped files.
 
-use super::pointer::{drag, scroll};
-use super::{Asked, Desk, Shown, handles};
+use super::drag::Drag;
+use super::pointer::scroll;
+use super::{Asked, Desk, Shown, handles, pointer};
 use crate::viewer::command::Command;
 use crate::viewer::state::Edit;
-use egui::{Key, PointerButton, Rect, Sense, Ui};
+use egui::{Key, Rect, Sense, Ui};
 
 /// A second of a held key, as a part of the eye's distance.
 const FLY_PER_S: f64 = 0.6;
@@ -17,14 +18,12 @@ const LONGEST_PASS_S: f32 = 0.1;
 
 pub(super) fn show(desk: &mut Desk, ui: &mut Ui, area: Rect, shown: &Shown<'_>, asked: &mut Asked) {
     let response = ui.interact(area, ui.scope_id().with("picture"), Sense::click_and_drag());
-    let is_held = handles::show(&mut desk.handles, ui, area, shown, &response, asked);
-    if !is_held {
-        for button in [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle] {
-            let by = response.drag_delta() / area.height();
-            if response.dragged_by(button) && by != egui::Vec2::ZERO {
-                let modifiers = ui.input(|input| input.modifiers);
-                asked.edit(drag(desk.tool, button, modifiers, by));
-            }
+    let drag = desk.drag.follow(ui, &response);
+    let moves = drag.as_ref().map_or(&[][..], |drag| &drag.moves);
+    let is_held = handles::show(&mut desk.handles, ui, area, shown, &response, moves, asked);
+    if let Some(Drag { button, modifiers, moves }) = drag.filter(|_| !is_held) {
+        for by in moves {
+            asked.edit(pointer::drag(desk.tool, button, modifiers, by / area.height()));
         }
     }
     if response.hovered() {
