@@ -31,7 +31,16 @@ impl Played {
     }
 }
 
-/// Refreshes come when the clock says so; those that are not drawn for in time are left out, as a headset's are.
+/// When refreshes come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// When it is time; those that are not drawn for in time are left out, as a headset's are.
+    Real,
+    /// When the one before is drawn: none is left out.
+    Patient,
+}
+
+/// Refreshes of a display that a clock simulates.
 pub(crate) struct Replay {
     gpu: Arc<Gpu>,
     played: Played,
@@ -39,8 +48,10 @@ pub(crate) struct Replay {
     eyes: [wgpu::Texture; 2],
     /// Of refresh 0; none before the first.
     begun: Option<Instant>,
+    clock: Clock,
     /// The next that there may be.
     next: u64,
+    is_closed: bool,
 }
 
 impl Replay {
@@ -49,11 +60,12 @@ impl Replay {
         gpu: Arc<Gpu>,
         played: Played,
         display: Display,
+        clock: Clock,
         size: [u32; 2],
     ) -> Result<Self, Failure> {
         let eye = || canvas::texture(&gpu, size, wgpu::TextureFormat::Rgba8Unorm);
         let eyes = [eye()?, eye()?];
-        Ok(Self { played, display, eyes, begun: None, next: 0, gpu })
+        Ok(Self { played, display, eyes, begun: None, clock, next: 0, is_closed: false, gpu })
     }
 }
 
@@ -78,11 +90,17 @@ impl Headset for Replay {
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
     ) -> Result<Moment, Failure> {
+        if self.is_closed {
+            return Ok(Moment::Ended("the session was closed".to_owned()));
+        }
         let begun = *self.begun.get_or_insert_with(Instant::now);
         let period_s = self.display.period_s();
         // What is drawn from now on is shown at the next refresh that is still to come.
         let now_s = begun.elapsed().as_secs_f64();
-        let refresh = self.next.max((now_s / period_s).floor() as u64);
+        let refresh = match self.clock {
+            Clock::Real => self.next.max((now_s / period_s).floor() as u64),
+            Clock::Patient => self.next,
+        };
         self.next = refresh + 1;
         let Some(tick) = self.played.tick_at(self.display.refresh_s(refresh), period_s) else {
             return Ok(Moment::Ended("the recording is over".to_owned()));
@@ -102,7 +120,7 @@ impl Headset for Replay {
     }
 
     fn close(&mut self) -> Result<(), Failure> {
-        self.next = u64::MAX;
+        self.is_closed = true;
         Ok(())
     }
 }
