@@ -62,7 +62,7 @@ pub(crate) struct VrBenchArgs {
     #[arg(long, value_name = "HZ", default_value_t = 90.0, value_parser = spec::within(1.0..=1000.0), allow_negative_numbers = true)]
     refresh_hz: f64,
 
-    /// Draw every refresh that a recording has without a headset, however long it takes, instead of leaving out late ones.
+    /// Without a headset, draw one refresh after the other as fast as it goes: the clock is simulated, and none is left out.
     #[arg(long)]
     patient: bool,
 

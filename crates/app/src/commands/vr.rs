@@ -85,7 +85,7 @@ pub(crate) struct VrArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     refreshes: Option<u64>,
 
-    /// Draw every refresh that a recording has without a headset, however long it takes, instead of leaving out late ones.
+    /// Without a headset, draw one refresh after the other as fast as it goes: the clock is simulated, and none is left out.
     #[arg(long)]
     patient: bool,
 
