@@ -8,6 +8,7 @@ mod camera;
 mod commands;
 mod failure;
 mod heat_map;
+mod interrupt;
 mod layering;
 mod look;
 mod output;

@@ -1,6 +1,6 @@
 //! `bench vr`: how well refreshes of a headset are kept, and how far what they show is from what they should.
 
-use super::vr::{EYE, HeadsetName, checked_transfer, open, played, read_recording};
+use super::vr::{CheckArgs, EYE, HeadsetName, checked_transfer, clock, open, played, read_recording};
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::spec;
@@ -16,6 +16,9 @@ use wheatstone_core::head::Display;
 use wheatstone_core::headset::Scale;
 use wheatstone_core::scene::Shading;
 use wheatstone_render::Gpu;
+
+/// One of so many refreshes is compared.
+const CHECK_EVERY: u64 = 20;
 
 /// Refreshes that are kept by a headset, while a head sways and hands take hold of the volume.
 ///
@@ -59,17 +62,16 @@ pub(crate) struct VrBenchArgs {
     #[arg(long, value_name = "HZ", default_value_t = 90.0, value_parser = spec::within(1.0..=1000.0), allow_negative_numbers = true)]
     refresh_hz: f64,
 
+    /// Without a headset, draw one refresh after the other as fast as it goes: the clock is simulated, and none is left out.
+    #[arg(long)]
+    patient: bool,
+
     /// End after so many refreshes.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     refreshes: Option<u64>,
 
-    /// Compare what is shown every so many refreshes.
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..))]
-    check_every: u64,
-
-    /// Compare at most so many refreshes.
-    #[arg(long, value_name = "N", default_value_t = 20)]
-    checks: usize,
+    #[command(flatten)]
+    check: CheckArgs,
 
     /// Print one JSON object on standard output instead of lines.
     #[arg(long)]
@@ -128,23 +130,23 @@ impl VrBenchArgs {
             scale: Scale::Human,
             stand,
             has_floor: false,
-            checks: Some((self.check_every, self.checks)),
+            checks: self.check.checking(Some(CHECK_EVERY)),
             refreshes: self.refreshes,
         };
         match self.headset {
             HeadsetName::None => {
                 let gpu = Arc::new(Gpu::open_best()?);
                 let loaded = open(source, &gpu)?;
-                let (recording, stand) = played(recording, &loaded.1)?;
+                let (played, stand) = played(recording, &loaded.1);
                 let display = Display::new(self.refresh_hz).map_err(Failure::input)?;
-                let mut headset = Replay::new(gpu, recording, display, self.size)?;
+                let mut headset = Replay::new(gpu, played, display, clock(self.patient), self.size)?;
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
             HeadsetName::Openxr => {
                 let connected = Connected::connect()?;
                 let loaded = open(source, connected.gpu())?;
-                let (recording, stand) = played(recording, &loaded.1)?;
-                let mut headset = Guided::new(OpenXr::begin(connected)?, recording);
+                let (played, stand) = played(recording, &loaded.1);
+                let mut headset = Guided::new(OpenXr::begin(connected)?, played);
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
         }

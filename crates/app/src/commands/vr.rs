@@ -1,6 +1,7 @@
 //! `vr`: a volume in a headset.
 
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::output::{print, print_json};
 use crate::progress::Bar;
 use crate::spec;
@@ -12,7 +13,8 @@ use crate::viewer::session::{Session, Showing};
 use crate::viewer::state::{Edit, WarpName};
 use crate::volume_args::RawArgs;
 use crate::vr::{
-    Beside, Connected, Guided, Mirror, OpenXr, Opening, Record, Replay, Room, load, run as show,
+    Beside, Checking, Clock, Connected, Guided, Mirror, OpenXr, Opening, Played, Record, Replay, Room, load,
+    run as show,
 };
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
@@ -35,7 +37,7 @@ pub(super) const EYE: &str = "640x720";
 /// An OpenXR runtime shows the pictures. The squeeze of one hand carries the volume, of both hands scales it; the trigger drags the face
 /// of the visible box or the clip plane that the hand points at; the thumb-stick goes through transfer functions (left, right) and shifts
 /// the window (up, down). What the volume costs does not matter: it is cast a few cells per refresh, and the newest whole picture is
-/// warped to where the eyes are.
+/// warped to where the eyes are. It ends when the window beside the headset is closed, at Ctrl-C, or when the runtime ends it.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     wheatstone vr\n  \
@@ -83,12 +85,43 @@ pub(crate) struct VrArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     refreshes: Option<u64>,
 
+    /// Without a headset, draw one refresh after the other as fast as it goes: the clock is simulated, and none is left out.
+    #[arg(long)]
+    patient: bool,
+
+    #[command(flatten)]
+    check: CheckArgs,
+
     /// Print what was measured as one JSON object when it ends.
     #[arg(long)]
     json: bool,
 
     #[command(flatten)]
     raw: RawArgs,
+}
+
+/// When what is shown is compared with direct renders from where the eyes were, after all is over.
+#[derive(Debug, Args)]
+pub(super) struct CheckArgs {
+    /// Compare what is shown every so many refreshes [default: vr: never; bench vr: 20].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    check_every: Option<u64>,
+
+    /// Compare at most so many refreshes.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    checks: usize,
+
+    /// Write what each eye was shown of the volume at refreshes that are compared, over black, to a folder.
+    #[arg(long, value_name = "DIR")]
+    check_pictures: Option<PathBuf>,
+}
+
+impl CheckArgs {
+    /// As asked for, or else one refresh of so many.
+    pub(super) fn checking(&self, every: Option<u64>) -> Option<Checking> {
+        let every = self.check_every.or(every)?;
+        Some(Checking { every, most: self.checks, pictures: self.check_pictures.clone() })
+    }
 }
 
 /// What shows pictures.
@@ -106,7 +139,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let mut commands: Vec<Command> = vec![Edit::Warp(args.warp).into()];
     commands.extend(args.tf.clone().map(Command::Preset));
     let record = args.record.as_deref().map(Record::begin).transpose()?;
-    let mut company = Company { mirror: None, record };
+    let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
     let recording = args.replay.as_deref().map(read_recording).transpose()?;
     let scale = if args.life_size { Scale::True } else { Scale::Human };
     let opening = |(session, arrived): (Session, _), stand| Opening {
@@ -116,17 +149,18 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         scale,
         stand,
         has_floor: args.floor,
-        checks: None,
+        checks: args.check.checking(None),
         refreshes: args.refreshes,
     };
     let report = match args.headset {
         HeadsetName::None => {
             let gpu = Arc::new(Gpu::open_best()?);
             let loaded = open(source, &gpu)?;
-            let (recording, stand) = played(recording, &loaded.1)?;
+            let (played, stand) = played(recording, &loaded.1);
             let display = Display::default();
             let size = spec::picture_size(EYE).map_err(Failure::input)?;
-            let mut headset = Replay::new(gpu, recording, display, size)?;
+            let mut headset = Replay::new(gpu, played, display, clock(args.patient), size)?;
+            company.interrupt.watch()?;
             show(&mut headset, opening(loaded, stand), &mut company)?
         }
         HeadsetName::Openxr => {
@@ -136,10 +170,9 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
                 company.mirror = mirror(&connected);
             }
             let headset = OpenXr::begin(connected)?;
-            match recording {
-                Some(recording) => {
-                    show(&mut Guided::new(headset, recording), opening(loaded, None), &mut company)?
-                }
+            company.interrupt.watch()?;
+            match recording.map(Played::Recording) {
+                Some(played) => show(&mut Guided::new(headset, played), opening(loaded, None), &mut company)?,
                 None => show(&mut { headset }, opening(loaded, None), &mut company)?,
             }
         }
@@ -178,19 +211,21 @@ pub(super) fn open(source: Source, gpu: &Arc<Gpu>) -> Result<(Session, (Box<Arri
 pub(super) fn played(
     recording: Option<Recording>,
     (arrived, showing): &(Box<Arrived>, Showing),
-) -> Result<(Recording, Option<Stand>), Failure> {
-    Ok(match recording {
-        Some(recording) => (recording, None),
+) -> (Played, Option<Stand>) {
+    match recording {
+        Some(recording) => (Played::Recording(recording), None),
         None => {
             let up = showing.state.look.up.direction();
             let demonstration = Demonstration::new(&arrived.facts.grid, up);
             let stand = *demonstration.stand();
-            let recording = demonstration
-                .recording(Display::default())
-                .map_err(|error| Failure::Internal(error.into()))?;
-            (recording, Some(stand))
+            (Played::Demonstration(Box::new(demonstration)), Some(stand))
         }
-    })
+    }
+}
+
+/// When refreshes come without a headset.
+pub(super) fn clock(is_patient: bool) -> Clock {
+    if is_patient { Clock::Patient } else { Clock::Real }
 }
 
 pub(super) fn read_recording(path: &Path) -> Result<Recording, Failure> {
@@ -203,10 +238,11 @@ pub(super) fn checked_transfer(text: &str) -> Result<String, String> {
     transfer_spec::parse(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
 }
 
-/// A mirror and a recording, if they are wanted.
+/// A mirror and a recording, if they are wanted, and what ends it all.
 struct Company {
     mirror: Option<Mirror>,
     record: Option<Record>,
+    interrupt: Interrupt,
 }
 
 impl Beside for Company {
@@ -218,6 +254,6 @@ impl Beside for Company {
     }
 
     fn has_quit(&self) -> bool {
-        self.mirror.as_ref().is_some_and(Mirror::has_quit)
+        self.interrupt.has_come() || self.mirror.as_ref().is_some_and(Mirror::has_quit)
     }
 }

@@ -2,10 +2,13 @@
 
 use super::stage::{Scenery, Stage};
 use crate::failure::Failure;
+use crate::output::{file_in, make_folder};
+use crate::picture::{Bits, write_png};
 use crate::viewer::canvas;
 use crate::viewer::casting::Casting;
 use crate::viewer::state::State;
-use wheatstone_core::headset::Eye;
+use std::path::PathBuf;
+use wheatstone_core::headset::{Eye, Side};
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::metrics::compare;
 use wheatstone_core::view::View;
@@ -14,9 +17,23 @@ use wheatstone_render::Gpu;
 /// How far the shown picture's eye may be from the eye for a refresh to count as still, metres of the volume's longest side.
 const STILL: f64 = 1e-6;
 
+/// Which refreshes are compared.
+#[derive(Debug, Clone)]
+pub(crate) struct Checking {
+    /// One of so many.
+    pub(crate) every: u64,
+    /// So many at most.
+    pub(crate) most: usize,
+    /// The folder that what was shown is written to.
+    pub(crate) pictures: Option<PathBuf>,
+}
+
 /// One eye at one refresh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Checked {
+    /// Counted from 1, from the first that showed the volume.
+    pub(crate) refresh: u64,
+    pub(crate) side: Side,
     pub(crate) dssim: f64,
     /// Whether what was shown was cast from elsewhere.
     pub(crate) moves: bool,
@@ -25,14 +42,14 @@ pub(crate) struct Checked {
 /// What was shown at some refreshes, kept on the device until the session is over.
 pub(crate) struct Checks {
     stage: Stage,
-    /// Refreshes from one to the next.
-    every: u64,
+    checking: Checking,
     refresh: u64,
     kept: Vec<Kept>,
-    most: usize,
 }
 
 struct Kept {
+    refresh: u64,
+    side: Side,
     image: wgpu::Texture,
     wanted: View,
     moves: bool,
@@ -50,10 +67,11 @@ pub(crate) struct Seen<'a> {
 }
 
 impl Checks {
-    /// Of every so many refreshes, and so many of them at most.
-    pub(crate) fn new(gpu: &Gpu, every: u64, most: usize) -> Self {
+    /// With a folder that can be written to, if there is to be one.
+    pub(crate) fn new(gpu: &Gpu, checking: Checking) -> Result<Self, Failure> {
+        checking.pictures.as_deref().map(make_folder).transpose()?;
         let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm);
-        Self { stage, every: every.max(1), refresh: 0, kept: Vec::new(), most: 2 * most }
+        Ok(Self { stage, checking, refresh: 0, kept: Vec::new() })
     }
 
     /// Encodes keeping what the eyes are shown, if it is time to.
@@ -65,10 +83,11 @@ impl Checks {
         seen: [Seen<'_>; 2],
     ) -> Result<(), Failure> {
         self.refresh += 1;
-        if !self.refresh.is_multiple_of(self.every) || self.kept.len() >= self.most {
+        let is_enough = self.kept.len() >= 2 * self.checking.most;
+        if !self.refresh.is_multiple_of(self.checking.every) || is_enough {
             return Ok(());
         }
-        for Seen { eye, wanted, cast_from, picture } in seen {
+        for (side, Seen { eye, wanted, cast_from, picture }) in Side::BOTH.into_iter().zip(seen) {
             let image = canvas::texture(gpu, wanted.size, wgpu::TextureFormat::Rgba8Unorm)?;
             let view = image.create_view(&wgpu::TextureViewDescriptor::default());
             let scenery = Scenery { picture: Some(picture), ..Scenery::default() };
@@ -77,22 +96,35 @@ impl Checks {
             let turned =
                 !wanted.view_from_world.matrix3.abs_diff_eq(cast_from.view_from_world.matrix3, STILL);
             let moves = turned || eye_m(&wanted).distance(eye_m(&cast_from)) > STILL;
-            self.kept.push(Kept { image, wanted, moves, state: state.clone() });
+            let refresh = self.refresh;
+            self.kept.push(Kept { refresh, side, image, wanted, moves, state: state.clone() });
         }
         Ok(())
     }
 
-    /// Casts what should have been seen.
+    /// Casts what should have been seen, and writes what was.
     pub(crate) fn finish(self, gpu: &Gpu, casting: &mut Casting) -> Result<Vec<Checked>, Failure> {
-        let compare_one = |Kept { image, wanted, moves, state }: Kept| {
+        let compare_one = |Kept { refresh, side, image, wanted, moves, state }: Kept| {
             let truth = casting.render(gpu, &state, wanted)?.over_background([0.0; 3]);
             let texels: Vec<[u8; 4]> = gpu.read_texture(&image)?;
             let rgb = texels.iter().map(|&[r, g, b, _]| [r, g, b].map(|value| f32::from(value) / 255.0));
             let [width, height] = wanted.size;
             let shown = RgbImage { width, height, rgb: rgb.collect() };
+            if let Some(folder) = &self.checking.pictures {
+                let name = format!("refresh_{refresh:05}_{}.png", name(side));
+                write_png(&file_in(folder, &name), &shown, Bits::Eight)?;
+            }
             let dssim = compare(&shown, &truth).map_err(Failure::input)?.dssim();
-            Ok(Checked { dssim, moves })
+            Ok(Checked { refresh, side, dssim, moves })
         };
         self.kept.into_iter().map(compare_one).collect()
+    }
+}
+
+/// An eye's name, in files and reports.
+pub(crate) fn name(side: Side) -> &'static str {
+    match side {
+        Side::Left => "left",
+        Side::Right => "right",
     }
 }

@@ -19,10 +19,11 @@ mod report;
 mod room;
 mod stage;
 
+pub(crate) use check::Checking;
 pub(crate) use mirror::Mirror;
 #[cfg(any(target_os = "linux", target_os = "windows"))]
 pub(crate) use openxr::{Connected, OpenXr};
 pub(crate) use record::Record;
-pub(crate) use replay::{Guided, Replay};
+pub(crate) use replay::{Clock, Guided, Played, Replay};
 pub(crate) use report::Report;
 pub(crate) use room::{Beside, Opening, Room, load, run};

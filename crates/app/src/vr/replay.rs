@@ -6,39 +6,66 @@ use crate::viewer::canvas;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wheatstone_core::head::Display;
-use wheatstone_core::headset::{Eye, Recording, Side, Tick};
+use wheatstone_core::headset::{Demonstration, Eye, Recording, Side, Tick};
 use wheatstone_render::Gpu;
 
-/// What eyes and hands do so many seconds after the beginning of a recording; nothing any more after its end.
-fn tick_at(recording: &Recording, time_s: f64, period_s: f64) -> Option<Tick> {
-    let first_s = recording.ticks().first()?.display_time_s;
-    let tick = recording.tick_at(first_s + time_s)?;
-    Some(Tick { display_time_s: time_s, period_s, ..tick })
+/// What is played.
+#[derive(Debug)]
+pub(crate) enum Played {
+    Demonstration(Box<Demonstration>),
+    Recording(Recording),
 }
 
-/// Refreshes come when the clock says so; those that are not drawn for in time are left out, as a headset's are.
+impl Played {
+    /// What eyes and hands do so many seconds after the beginning; nothing any more after the end.
+    pub(crate) fn tick_at(&self, time_s: f64, period_s: f64) -> Option<Tick> {
+        let tick = match self {
+            Self::Demonstration(demonstration) => (time_s <= demonstration.duration_s() + period_s)
+                .then(|| demonstration.tick_at(time_s, period_s))?,
+            Self::Recording(recording) => {
+                let first_s = recording.ticks()[0].display_time_s;
+                recording.tick_at(first_s + time_s)?
+            }
+        };
+        Some(Tick { display_time_s: time_s, period_s, ..tick })
+    }
+}
+
+/// When refreshes come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// When it is time; those that are not drawn for in time are left out, as a headset's are.
+    Real,
+    /// As soon as the one before is drawn: none is left out, none is waited for.
+    Patient,
+}
+
+/// Refreshes of a display that a clock simulates.
 pub(crate) struct Replay {
     gpu: Arc<Gpu>,
-    recording: Recording,
+    played: Played,
     display: Display,
     eyes: [wgpu::Texture; 2],
     /// Of refresh 0; none before the first.
     begun: Option<Instant>,
+    clock: Clock,
     /// The next that there may be.
     next: u64,
+    is_closed: bool,
 }
 
 impl Replay {
     /// With pictures of some pixels for each eye.
     pub(crate) fn new(
         gpu: Arc<Gpu>,
-        recording: Recording,
+        played: Played,
         display: Display,
+        clock: Clock,
         size: [u32; 2],
     ) -> Result<Self, Failure> {
         let eye = || canvas::texture(&gpu, size, wgpu::TextureFormat::Rgba8Unorm);
         let eyes = [eye()?, eye()?];
-        Ok(Self { recording, display, eyes, begun: None, next: 0, gpu })
+        Ok(Self { played, display, eyes, begun: None, clock, next: 0, is_closed: false, gpu })
     }
 }
 
@@ -63,17 +90,25 @@ impl Headset for Replay {
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
     ) -> Result<Moment, Failure> {
+        if self.is_closed {
+            return Ok(Moment::Ended("the session was closed".to_owned()));
+        }
         let begun = *self.begun.get_or_insert_with(Instant::now);
         let period_s = self.display.period_s();
         // What is drawn from now on is shown at the next refresh that is still to come.
         let now_s = begun.elapsed().as_secs_f64();
-        let refresh = self.next.max((now_s / period_s).floor() as u64);
+        let refresh = match self.clock {
+            Clock::Real => self.next.max((now_s / period_s).floor() as u64),
+            Clock::Patient => self.next,
+        };
         self.next = refresh + 1;
-        let Some(tick) = tick_at(&self.recording, self.display.refresh_s(refresh), period_s) else {
+        let Some(tick) = self.played.tick_at(self.display.refresh_s(refresh), period_s) else {
             return Ok(Moment::Ended("the recording is over".to_owned()));
         };
-        let wait_s = self.display.refresh_s(refresh) - now_s;
-        std::thread::sleep(Duration::from_secs_f64(wait_s.max(0.0)));
+        if self.clock == Clock::Real {
+            let wait_s = self.display.refresh_s(refresh) - now_s;
+            std::thread::sleep(Duration::from_secs_f64(wait_s.max(0.0)));
+        }
         draw(&mut Drawn { tick, eyes: &self.eyes })?;
         Ok(Moment::Shown)
     }
@@ -87,7 +122,7 @@ impl Headset for Replay {
     }
 
     fn close(&mut self) -> Result<(), Failure> {
-        self.next = u64::MAX;
+        self.is_closed = true;
         Ok(())
     }
 }
@@ -95,14 +130,14 @@ impl Headset for Replay {
 /// A headset of which eyes and hands do what was recorded; frusta and refreshes stay its own.
 pub(crate) struct Guided<H> {
     headset: H,
-    recording: Recording,
+    played: Played,
     /// Display time of the first refresh, seconds.
     first_s: Option<f64>,
 }
 
 impl<H> Guided<H> {
-    pub(crate) fn new(headset: H, recording: Recording) -> Self {
-        Self { headset, recording, first_s: None }
+    pub(crate) fn new(headset: H, played: Played) -> Self {
+        Self { headset, played, first_s: None }
     }
 }
 
@@ -127,12 +162,12 @@ impl<H: Headset> Headset for Guided<H> {
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
     ) -> Result<Moment, Failure> {
-        let Self { headset, recording, first_s } = self;
+        let Self { headset, played, first_s } = self;
         let mut is_over = false;
         let moment = headset.refresh(&mut |sight| {
             let own = *sight.tick();
             let time_s = own.display_time_s - *first_s.get_or_insert(own.display_time_s);
-            match tick_at(recording, time_s, own.period_s) {
+            match played.tick_at(time_s, own.period_s) {
                 Some(recorded) => draw(&mut Guide { sight, tick: guided(&own, &recorded) }),
                 None => {
                     is_over = true;

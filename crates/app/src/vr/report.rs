@@ -1,6 +1,6 @@
 //! What a session tells when it ends.
 
-use super::check::Checked;
+use super::check::{Checked, name};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -64,6 +64,12 @@ impl Report {
             "dssim_moving_worst": moving.map(|of| of[1]),
             "dssim_still_mean": still.map(|of| of[0]),
             "dssim_still_worst": still.map(|of| of[1]),
+            "checked": self.checked.iter().map(|checked| json!({
+                "refresh": checked.refresh,
+                "eye": name(checked.side),
+                "moves": checked.moves,
+                "dssim": checked.dssim,
+            })).collect::<Vec<_>>(),
             "stand": self.stand.map(|stand| json!({
                 "position_m": stand.pose.position_m.to_array(),
                 "orientation": stand.pose.orientation.to_array(),

@@ -1,6 +1,6 @@
 //! One refresh after the other: eyes and hands in, pictures out, then work for the device.
 
-use super::check::{Checks, Seen};
+use super::check::{Checking, Checks, Seen};
 use super::eyes::{see_alike, upright_views};
 use super::hands::Hands;
 use super::headset::{Headset, Moment, Sight};
@@ -43,8 +43,8 @@ pub(crate) struct Opening {
     /// Where the volume stands at first; none before the eyes.
     pub(crate) stand: Option<Stand>,
     pub(crate) has_floor: bool,
-    /// Every how many refreshes what is shown is compared with what should be, and how often at most.
-    pub(crate) checks: Option<(u64, usize)>,
+    /// When what is shown is compared with what should be.
+    pub(crate) checks: Option<Checking>,
     /// Refreshes after which to end.
     pub(crate) refreshes: Option<u64>,
 }
@@ -71,13 +71,14 @@ pub(crate) fn run(
 ) -> Result<Report, Failure> {
     let mut room = Room::new(headset, opening)?;
     let ended = loop {
-        match room.refresh(headset)? {
+        let moment = room.refresh(headset)?;
+        let has_quit = room.wants_to_end() || beside.has_quit();
+        match moment {
             Moment::Ended(reason) => break reason,
+            Moment::Idle if has_quit => break "the session was closed".to_owned(),
             Moment::Idle => thread::sleep(NAP),
+            Moment::Shown if has_quit => headset.close()?,
             Moment::Shown => {}
-        }
-        if room.wants_to_end() || beside.has_quit() {
-            headset.close()?;
         }
         beside.refreshed(&mut room)?;
     };
@@ -148,7 +149,7 @@ impl Room {
             panel: Panel::new(&gpu, headset.image_format()),
             hands: None,
             ladder: Ladder::default(),
-            checks: checks.map(|(every, most)| Checks::new(&gpu, every, most)),
+            checks: checks.map(|checking| Checks::new(&gpu, checking)).transpose()?,
             scale,
             stand,
             has_floor,

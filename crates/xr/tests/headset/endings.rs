@@ -1,6 +1,6 @@
 //! How sessions end.
 
-use crate::monado::inside;
+use crate::inside::inside;
 use crate::support::{begin, fill, make_frame, until, until_running};
 use std::time::Duration;
 use wheatstone_render::GpuError;

@@ -1,6 +1,6 @@
 //! Where the eyes are and what they see.
 
-use crate::monado::inside;
+use crate::inside::inside;
 use crate::support::{begin, until};
 use glam::{DQuat, DVec3, EulerRot};
 use wheatstone_core::head::Pose;

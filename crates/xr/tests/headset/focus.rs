@@ -1,6 +1,6 @@
 //! Who has the hands.
 
-use crate::monado::inside;
+use crate::inside::inside;
 use crate::remote::Controller;
 use crate::support::{begin, make_frame, until};
 use glam::{DQuat, DVec3};

@@ -1,6 +1,6 @@
 //! Pictures.
 
-use crate::monado::{Surroundings, inside, inside_with};
+use crate::inside::{Surroundings, inside, inside_with};
 use crate::support::{begin, clear, fill, until, until_running};
 use glam::{DQuat, DVec3};
 use wheatstone_core::head::Pose;

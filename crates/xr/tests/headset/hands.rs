@@ -1,6 +1,6 @@
 //! Controllers and bare hands.
 
-use crate::monado::inside;
+use crate::inside::inside;
 use crate::remote::Controller;
 use crate::support::{begin, until};
 use glam::{DQuat, DVec3};

@@ -5,6 +5,7 @@
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "all of this crate is test code")]
 
+mod inside;
 mod monado;
 mod remote;
 mod screenshot;

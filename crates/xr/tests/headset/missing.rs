@@ -1,6 +1,7 @@
 //! What is told when something is missing.
 
-use crate::monado::{Compositor, Surroundings, inside_with};
+use crate::inside::{Surroundings, inside_with};
+use crate::monado::Compositor;
 use wheatstone_xr::{Runtime, XrError};
 
 fn without_runtime() -> String {

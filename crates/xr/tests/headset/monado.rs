@@ -1,19 +1,17 @@
-//! Monado, and tests that run with its libraries.
+//! Monado: its service, with devices that the test moves, and programs that run with its libraries.
 //!
-//! Monado, its client library and its drivers need newer system libraries than the machine may have. So a test starts the service, and then
-//! itself once more, both by the dynamic loader that belongs to them; what it is to show happens in that second process.
+//! Monado, its client library and its drivers need newer system libraries than the machine may have. So what talks to it is started by
+//! the dynamic loader that belongs to them.
 
 use crate::remote::Remote;
 use crate::screenshot::Screenshot;
-use std::ffi::{OsStr, OsString};
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpListener;
-use std::os::unix::ffi::OsStrExt as _;
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tempfile::TempDir;
 
@@ -21,16 +19,8 @@ use tempfile::TempDir;
 const MONADO: &str = "WHEATSTONE_MONADO";
 /// Why there is none.
 const SKIPPED: &str = "WHEATSTONE_SKIP_XR_TESTS";
-/// Set in the second process.
-const INSIDE: &str = "WHEATSTONE_XR_INSIDE";
-const PORT: &str = "WHEATSTONE_XR_PORT";
-const SERVICE: &str = "WHEATSTONE_XR_SERVICE";
 /// Where a program's complaints go.
 const LOG: &str = "WHEATSTONE_XR_LOG";
-/// Set in a further process.
-const SECOND: &str = "WHEATSTONE_XR_SECOND";
-/// What is on the display.
-const SCREEN: &str = "WHEATSTONE_XR_SCREEN";
 
 /// Runs a program, and ends it when it is told to or when whoever started it is gone: then its standard input ends.
 const KEEPER: &str =
@@ -50,26 +40,66 @@ pub(crate) enum Compositor {
     Screen,
 }
 
-/// What a test runs in.
-pub(crate) struct Surroundings {
-    pub(crate) compositor: Compositor,
-    /// Further environment of the second process.
-    pub(crate) environment: Vec<(&'static str, OsString)>,
-}
-
-impl Default for Surroundings {
-    fn default() -> Self {
-        Self { compositor: Compositor::Null, environment: Vec::new() }
-    }
-}
-
-/// The service, as the test sees it.
+/// Monado as it runs; it ends with this.
 pub(crate) struct Monado {
-    port: u16,
-    service: u32,
+    service: Option<Service>,
+    display: Option<Display>,
+    home: TempDir,
+    prefix: PathBuf,
+    _turn: MutexGuard<'static, ()>,
+}
+
+/// The service, as a test sees it.
+#[derive(Debug, Clone)]
+pub(crate) struct Contact {
+    /// Where the remote driver listens; 0 without a service.
+    pub(crate) port: u16,
+    /// Its process; 0 without a service.
+    pub(crate) service: u32,
+    /// The file that holds what is on the display.
+    pub(crate) screen: Option<PathBuf>,
 }
 
 impl Monado {
+    /// Starts it once no other test has it. Tells why there is none, and that the test is skipped.
+    pub(crate) fn start(compositor: Compositor) -> Option<Self> {
+        let prefix = match prefix() {
+            Ok(prefix) => prefix,
+            Err(reason) => {
+                eprintln!("skipped: {reason}");
+                return None;
+            }
+        };
+        let turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+        let home = tempfile::Builder::new().prefix("monado-").tempdir().unwrap();
+        let display = (compositor == Compositor::Screen).then(|| Display::start(&home));
+        let service =
+            (compositor != Compositor::None).then(|| Service::start(&prefix, &home, display.as_ref()));
+        Some(Self { service, display, home, prefix, _turn: turn })
+    }
+
+    /// A program with its libraries, that finds it.
+    pub(crate) fn command(&self, program: &Path) -> Command {
+        by_own_loader(&self.prefix, &self.home, program)
+    }
+
+    /// What is to be known to talk to it.
+    pub(crate) fn contact(&self) -> Contact {
+        let service = self.service.as_ref();
+        Contact {
+            port: service.map_or(0, |service| service.port),
+            service: service.map_or(0, |service| service.kept.process),
+            screen: self.display.as_ref().map(|display| display.screen.clone()),
+        }
+    }
+
+    /// What the service has said.
+    pub(crate) fn log(&self) -> String {
+        std::fs::read_to_string(self.home.path().join("service.log")).unwrap_or_default()
+    }
+}
+
+impl Contact {
     /// Devices that the test moves.
     pub(crate) fn remote(&self) -> Remote {
         Remote::connect(self.port)
@@ -77,60 +107,13 @@ impl Monado {
 
     /// What is on the display.
     pub(crate) fn screen(&self) -> Screenshot {
-        Screenshot::of(&std::fs::read(std::env::var_os(SCREEN).unwrap()).unwrap())
-    }
-
-    /// Starts the test's body once more, as another program.
-    pub(crate) fn second(&self) -> Child {
-        let own = std::fs::read("/proc/self/cmdline").unwrap();
-        let mut words = own.split(|byte| *byte == 0).map(OsStr::from_bytes).filter(|word| !word.is_empty());
-        Command::new(words.next().unwrap())
-            .args(words)
-            .env(SECOND, "1")
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .spawn()
-            .unwrap()
-    }
-
-    /// Whether this is that other program.
-    pub(crate) fn is_second(&self) -> bool {
-        std::env::var_os(SECOND).is_some()
+        Screenshot::of(&std::fs::read(self.screen.as_ref().unwrap()).unwrap())
     }
 
     /// Ends the service as a crash would.
     pub(crate) fn kill(&self) {
         assert!(Command::new("kill").args(["-9", &self.service.to_string()]).status().unwrap().success());
     }
-}
-
-/// Runs a test's body with Monado.
-pub(crate) fn inside<Test>(test: Test, body: impl FnOnce(&Monado)) -> Option<String> {
-    inside_with(test, Surroundings::default(), body)
-}
-
-/// Runs a test's body in a second process, with Monado's libraries. Returns what that process wrote; nothing where it is skipped, and in
-/// the second process.
-pub(crate) fn inside_with<Test>(
-    _: Test,
-    surroundings: Surroundings,
-    body: impl FnOnce(&Monado),
-) -> Option<String> {
-    if std::env::var_os(INSIDE).is_some() {
-        let number = |name| std::env::var(name).map_or(0, |value| value.parse().unwrap());
-        body(&Monado { port: u16::try_from(number(PORT)).unwrap(), service: number(SERVICE) });
-        return None;
-    }
-    let prefix = match prefix() {
-        Ok(prefix) => prefix,
-        Err(reason) => {
-            eprintln!("skipped: {reason}");
-            return None;
-        }
-    };
-    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    let (_, path) = std::any::type_name::<Test>().split_once("::").unwrap();
-    Some(run(&prefix, path, surroundings))
 }
 
 /// The folder that `scripts/monado.sh` has made, or why there is none.
@@ -152,31 +135,6 @@ fn prefix() -> Result<PathBuf, String> {
         prefix.display()
     );
     Ok(prefix)
-}
-
-fn run(prefix: &Path, test: &str, surroundings: Surroundings) -> String {
-    let home = tempfile::Builder::new().prefix("monado-").tempdir().unwrap();
-    let display = (surroundings.compositor == Compositor::Screen).then(|| Display::start(&home));
-    let service = (surroundings.compositor != Compositor::None)
-        .then(|| Service::start(prefix, &home, display.as_ref()));
-    let mut command = by_own_loader(prefix, &home, &std::env::current_exe().unwrap());
-    command.args([test, "--exact", "--nocapture", "--test-threads=1"]).env(INSIDE, "1");
-    if let Some(service) = &service {
-        command.env(PORT, service.port.to_string()).env(SERVICE, service.kept.process.to_string());
-    }
-    if let Some(display) = &display {
-        command.env(SCREEN, &display.screen);
-    }
-    command.envs(surroundings.environment);
-    let output = command.stdin(Stdio::null()).output().unwrap();
-    let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
-    let log = std::fs::read_to_string(home.path().join("service.log")).unwrap_or_default();
-    assert!(
-        output.status.success() && out.contains("1 passed"),
-        "{test}: {}\n{out}\n{err}\n-- service --\n{log}",
-        output.status
-    );
-    format!("{out}\n{err}")
 }
 
 /// A program under the dynamic loader and with the libraries of a prefix.

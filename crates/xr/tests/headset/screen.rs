@@ -1,6 +1,7 @@
 //! What comes out on the display.
 
-use crate::monado::{Compositor, Surroundings, inside_with};
+use crate::inside::{Surroundings, inside_with};
+use crate::monado::Compositor;
 use crate::support::{begin, clear, until_running};
 use glam::{DQuat, DVec3};
 use wheatstone_core::head::Pose;

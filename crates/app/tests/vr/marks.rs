@@ -1,0 +1,134 @@
+//! Where things are seen.
+
+use crate::monado::Compositor;
+use crate::support::{Place, frustum, pose, stand_of};
+use glam::{DVec2, DVec3};
+use image::GrayImage;
+use wheatstone_core::head::Pose;
+use wheatstone_core::headset::{Eye, Stand};
+use wheatstone_core::view::{AnatomicalDirection, Frustum, world_from_patient};
+use wheatstone_core::volume::{Grid, Volume, Voxels};
+use wheatstone_io::write_nrrd;
+
+const DIMS: [usize; 3] = [40, 32, 24];
+const SPACING_MM: [f64; 3] = [1.0, 1.0, 1.5];
+
+/// Middles of the marks, voxels; no turn or mirror image of them looks like them.
+const MARKS: [[f64; 3]; 5] =
+    [[5.0, 6.0, 4.0], [35.0, 9.0, 5.0], [20.0, 25.0, 12.0], [8.0, 16.0, 20.0], [33.0, 27.0, 19.0]];
+const RADIUS_MM: f64 = 1.5;
+
+/// White marks on black, as bright from wherever they are seen.
+const VIEW: &str = r#"{
+    "wheatstone_view": 1,
+    "file": "marks.nrrd",
+    "camera": {"azimuth_deg": 0, "elevation_deg": 0, "distance_m": 1.7, "fov_y_deg": 40, "target_m": [0, 0, 0]},
+    "look": {
+        "mode": "dvr", "shading": "none", "isovalue": 0.5, "preintegrated": false, "sampling_factor": 1,
+        "background": [0, 0, 0], "up": "S"
+    },
+    "transfer": {
+        "color": [[0, 1, 1, 1], [1, 1, 1, 1]], "opacity": [[0, 0], [0.3, 0], [1, 1]], "gradient_opacity": [],
+        "window": [0, 255]
+    },
+    "clip": {"box_lo": [0, 0, 0], "box_hi": [1, 1, 1], "has_handles": false, "plane": null},
+    "stereo": {"arrangement": "mono", "eye_distance_m": 0.065, "method": "two_casts"},
+    "pace": {"refresh_ms": 40, "warp": "volumetric"}
+}"#;
+
+/// Of the refreshes that show the volume, one at which the picture at rest is as fine as it gets; and refreshes in all, of which the first
+/// ones show nothing.
+const CHECKED: &str = "40";
+const REFRESHES: &str = "100";
+
+/// How far a mark may be from where it is to be seen, pixels.
+const OFF_PX: f64 = 0.25;
+
+/// Light that is no mark's, as a part of all of it.
+const STRAY: f64 = 0.01;
+
+/// Balls with a soft edge.
+fn marks(grid: &Grid) -> Volume {
+    let [x, y, z] = DIMS;
+    let value = |index: usize| {
+        let at = DVec3::from([index % x, index / x % y, index / (x * y)].map(|i| i as f64 + 0.5));
+        let distance = |mark: &[f64; 3]| ((at - DVec3::from(*mark)) * DVec3::from(SPACING_MM)).length();
+        let nearest = MARKS.iter().map(distance).fold(f64::INFINITY, f64::min);
+        (255.0 * (0.5 + 0.5 * (RADIUS_MM - nearest)).clamp(0.0, 1.0)).round() as u8
+    };
+    Volume::new(grid.clone(), Voxels::U8((0..x * y * z).map(value).collect())).unwrap()
+}
+
+/// Where each mark is in the room.
+fn places(grid: &Grid, stand: &Stand) -> [DVec3; MARKS.len()] {
+    let upright_from_patient = world_from_patient(grid, AnatomicalDirection::Superior);
+    let room_from_voxel = stand.world_from_upright() * upright_from_patient * grid.patient_from_voxel();
+    MARKS.map(|mark| room_from_voxel.transform_point3(mark.into()))
+}
+
+/// The middle of the light about a pixel, and how much there is.
+fn light_about(picture: &GrayImage, at: DVec2, radius_px: f64) -> (DVec2, f64) {
+    let mut sum = (DVec2::ZERO, 0.0);
+    for (x, y, level) in picture.enumerate_pixels() {
+        let pixel = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        if pixel.distance(at) < radius_px {
+            let light = f64::from(level.0[0]);
+            sum = (sum.0 + light * pixel, sum.1 + light);
+        }
+    }
+    (sum.0 / sum.1, sum.1)
+}
+
+/// Shows the marks to eyes at places in a head, and compares where they are seen.
+fn check(place: &Place, name: &str, grid: &Grid, head: &Pose, pair: [(Frustum, Pose); 2]) {
+    let contact = place.contact();
+    contact.remote().eyes(&pair).head(head).send();
+    let shown = format!("{name}-shown");
+    let flags = ["marks.json", "--refreshes", REFRESHES];
+    let checks = ["--check-every", CHECKED, "--check-pictures", &shown];
+    let report = place.begin_vr(name, &[flags.as_slice(), &checks].concat()).wait().json();
+    let marks = places(grid, &stand_of(&report));
+    let [left, right] = pair.map(|(frustum, in_head)| {
+        let position_m = head.position_m + head.orientation * in_head.position_m;
+        Eye { pose: Pose { position_m, orientation: head.orientation * in_head.orientation }, frustum }
+    });
+    for (eye, other, side) in [(left, right, "left"), (right, left, "right")] {
+        let file = place.folder().join(&shown).join(format!("refresh_{CHECKED:0>5}_{side}.png"));
+        let picture = image::open(file).unwrap().into_luma8();
+        let view = eye.view([picture.width(), picture.height()]);
+        let all = light_about(&picture, DVec2::ZERO, f64::INFINITY).1;
+        let mut of_marks = 0.0;
+        for mark in marks {
+            let wanted = view.pixel_position(mark).unwrap();
+            let scale_m = stand_of(&report).longest_side_m / 40.0;
+            let px_per_tangent = f64::from(picture.width()) / (eye.frustum.right - eye.frustum.left);
+            let radius_px = 2.0 * RADIUS_MM * scale_m / mark.distance(eye.pose.position_m) * px_per_tangent;
+            let (seen, light) = light_about(&picture, wanted, radius_px);
+            of_marks += light;
+            assert!(seen.distance(wanted) < OFF_PX, "{name}, {side}: {seen} instead of {wanted}");
+            let by_the_other = other.view(view.size).pixel_position(mark).unwrap();
+            assert!(by_the_other.distance(wanted) > 10.0, "{name}: the eyes see the same");
+        }
+        assert!((1.0 - STRAY..=1.0 + STRAY).contains(&(of_marks / all)), "{name}, {side}: {of_marks} of {all}");
+    }
+}
+
+#[test]
+fn marks_are_seen_by_each_eye_where_its_lens_and_place_put_them() {
+    let Some(place) = Place::start(Compositor::Null) else { return };
+    let grid = Grid::centred(DIMS, SPACING_MM).unwrap();
+    write_nrrd(&place.folder().join("marks.nrrd"), &marks(&grid)).unwrap();
+    std::fs::write(place.folder().join("marks.json"), VIEW).unwrap();
+    let head = pose([0.2, 1.5, -0.3], [0.4, -0.25, 0.1]);
+    let different = [
+        (frustum([-0.9, 0.7, -0.8, 0.6]), pose([-0.031, 0.002, 0.0], [0.0; 3])),
+        (frustum([-0.65, 0.95, -0.75, 0.55]), pose([0.034, -0.001, 0.003], [0.0; 3])),
+    ];
+    check(&place, "different", &grid, &head, different);
+    // Image planes that are not parallel.
+    let canted = [
+        (frustum([-1.0, 0.6, -0.7, 0.7]), pose([-0.032, 0.0, 0.0], [0.1, 0.0, 0.02])),
+        (frustum([-0.6, 1.0, -0.7, 0.7]), pose([0.032, 0.0, 0.0], [-0.1, 0.0, -0.01])),
+    ];
+    check(&place, "canted", &grid, &head, canted);
+}

@@ -1,0 +1,64 @@
+//! A head that moves.
+
+use crate::monado::Compositor;
+use crate::remote::Remote;
+use crate::support::{Place, Started, pose};
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+use wheatstone_core::head::Pose;
+
+/// Refreshes while the head moves, and in all. They are enough for a picture at rest to become as fine as it gets.
+const MOVING: usize = 200;
+const REFRESHES: usize = 300;
+
+/// From one pose that is sent to the next.
+const SEND_EVERY: Duration = Duration::from_millis(5);
+
+/// Sways by some centimetres and degrees, as somebody who looks at something does.
+fn swaying(time_s: f64) -> Pose {
+    let sway = |amplitude: f64, period_s: f64| amplitude * (TAU * time_s / period_s).sin();
+    pose(
+        [sway(0.04, 4.0), 1.6 + sway(0.015, 3.0), sway(0.02, 5.0)],
+        [sway(0.1, 5.0), -0.15 + sway(0.03, 3.5), sway(0.02, 6.0)],
+    )
+}
+
+/// Moves the head until the session has been told of some refreshes, then leaves it elsewhere.
+fn sway(remote: &mut Remote, vr: &mut Started) {
+    let begun = Instant::now();
+    while vr.runs() && vr.ticks().len() < MOVING {
+        for _ in 0..20 {
+            remote.head(&swaying(begun.elapsed().as_secs_f64())).send();
+            std::thread::sleep(SEND_EVERY);
+        }
+    }
+    remote.head(&pose([0.08, 1.55, 0.05], [-0.1, -0.2, 0.0])).send();
+}
+
+/// DSSIM of the checks of some refreshes.
+fn dssims(report: &Value, wanted: impl Fn(&Value) -> bool) -> Vec<f64> {
+    let checked = report["checked"].as_array().unwrap();
+    checked.iter().filter(|check| wanted(check)).map(|check| check["dssim"].as_f64().unwrap()).collect()
+}
+
+#[test]
+fn every_refresh_is_shown_and_is_what_the_eyes_should_see() {
+    let Some(place) = Place::start(Compositor::Null) else { return };
+    let phantom = ["phantom", "shepp-logan", "--size", "48", "-o", "head.nrrd"];
+    assert_eq!(place.run(&phantom).code, 0);
+    let mut remote = place.contact().remote();
+    remote.head(&swaying(0.0)).send();
+    let refreshes = REFRESHES.to_string();
+    let flags = ["head.nrrd", "--refreshes", &refreshes, "--check-every", "10", "--checks", "30"];
+    let mut vr = place.begin_vr("moving", &flags);
+    sway(&mut remote, &mut vr);
+    let report = vr.wait().json();
+    assert_eq!(report["refreshes"], REFRESHES);
+    let moving = dssims(&report, |check| check["moves"] == true);
+    assert!(moving.len() >= 10, "the head hardly moved: {}", report["checked"]);
+    assert!(moving.iter().all(|dssim| *dssim <= 0.02), "{moving:?}");
+    let last = REFRESHES as u64 - 30;
+    let at_rest = dssims(&report, |check| check["refresh"].as_u64().unwrap() > last);
+    assert!(at_rest.len() >= 4 && at_rest.iter().all(|dssim| *dssim <= 0.003), "{at_rest:?}");
+}

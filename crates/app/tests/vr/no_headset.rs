@@ -1,0 +1,146 @@
+//! Without a headset: a demonstration, and recordings.
+
+use crate::support::{distance, folder, recorded, stand_of, wheatstone};
+use serde_json::Value;
+use wheatstone_core::headset::Demonstration;
+use wheatstone_core::phantom::Phantom;
+use wheatstone_core::transfer::Preset;
+use wheatstone_core::view::AnatomicalDirection;
+
+/// All keys of a row of `bench vr --json`.
+const KEYS: [&str; 21] = [
+    "checked",
+    "draw_ms_median",
+    "draw_ms_p99",
+    "draw_ms_worst",
+    "dropped",
+    "dssim_moving_mean",
+    "dssim_moving_worst",
+    "dssim_still_mean",
+    "dssim_still_worst",
+    "ended",
+    "failures",
+    "headset",
+    "period_ms",
+    "pictures",
+    "refreshes",
+    "shown",
+    "stand",
+    "view",
+    "volume",
+    "warp",
+    "warps",
+];
+
+fn sides(clip: &Value, side: &str) -> Vec<f64> {
+    serde_json::from_value(clip[side].clone()).unwrap()
+}
+
+#[test]
+fn a_demonstration_ends_where_it_is_to() {
+    let folder = folder();
+    let bench =
+        ["bench", "vr", "sphere.nrrd", "--size", "48x48", "--refresh-hz", "25", "--patient", "--json"];
+    let report = wheatstone(folder.path(), &[&bench[..], &["--check-every", "100"]].concat()).json();
+    let row = &report["rows"][0];
+
+    let sphere = Phantom::Sphere.cube(24).unwrap();
+    let demonstration = Demonstration::new(sphere.grid(), AnatomicalDirection::Superior);
+    let outcome = demonstration.outcome();
+    let off = distance(&stand_of(row), &outcome.stand);
+    assert!(off < 1e-6, "{off}: {} instead of {:?}", row["stand"], outcome.stand);
+    let clip = &row["view"]["clip"];
+    for (side, wanted) in [("box_lo", outcome.clip.box_lo), ("box_hi", outcome.clip.box_hi)] {
+        for (is, wanted) in sides(clip, side).into_iter().zip(wanted.to_array()) {
+            assert!((is - wanted).abs() < 1e-6, "{clip}");
+        }
+    }
+    assert!(clip["plane"].is_null());
+    assert_eq!(row["failures"], serde_json::json!([]));
+    assert_eq!(row["ended"], "the recording is over");
+
+    // The stick has gone to the first preset.
+    assert_eq!(outcome.preset_steps, 1);
+    let first = Preset::all().next().unwrap().name();
+    let by_flag = wheatstone(folder.path(), &[&bench[..], &["--tf", first, "--refreshes", "1"]].concat());
+    assert_eq!(row["view"]["transfer"], by_flag.json()["rows"][0]["view"]["transfer"]);
+}
+
+#[test]
+fn a_report_has_what_is_documented() {
+    let folder = folder();
+    let args = ["bench", "vr", "sphere.nrrd", "--size", "32x32", "--patient", "--json", "--refreshes", "12"];
+    let checks = ["--check-every", "4", "--checks", "2", "--check-pictures", "shown"];
+    let report = wheatstone(folder.path(), &[&args[..], &checks].concat()).json();
+    assert!(report["device"].is_string());
+    let row = report["rows"][0].as_object().unwrap();
+    assert!(row.keys().all(|key| KEYS.contains(&key.as_str())), "{:?}", row.keys());
+    assert!(KEYS.iter().all(|key| row.contains_key(*key)), "{:?}", row.keys());
+    assert_eq!(row["refreshes"], 12);
+    assert_eq!(row["ended"], "the session was closed");
+    let checked = row["checked"].as_array().unwrap();
+    assert_eq!(checked.len(), 4);
+    for (index, check) in checked.iter().enumerate() {
+        let eye = ["left", "right"][index % 2];
+        assert_eq!(check["eye"], eye);
+        let name = format!("shown/refresh_{:05}_{eye}.png", check["refresh"].as_u64().unwrap());
+        assert_eq!(image::image_dimensions(folder.path().join(name)).unwrap(), (32, 32));
+    }
+}
+
+#[test]
+fn what_is_recorded_is_played_back_to_the_same_end() {
+    let folder = folder();
+    let vr = ["vr", "sphere.nrrd", "--headset", "none", "--patient", "--json"];
+    let record = ["--record", "session.jsonl", "--refreshes", "200"];
+    let shown = wheatstone(folder.path(), &[&vr[..], &record].concat()).json();
+    let recording = recorded(&folder.path().join("session.jsonl"));
+    assert_eq!(recording.ticks().len(), 200);
+
+    let replay = ["--replay", "session.jsonl"];
+    let played = wheatstone(folder.path(), &[&vr[..], &replay].concat()).json();
+    let [shown_stand, played_stand] = [&shown, &played].map(stand_of);
+    let sphere = Phantom::Sphere.cube(24).unwrap();
+    let demonstration = Demonstration::new(sphere.grid(), AnatomicalDirection::Superior);
+    assert!(distance(&shown_stand, demonstration.stand()) > 0.03, "nothing was carried: {shown_stand:?}");
+    let off = distance(&shown_stand, &played_stand);
+    assert!(off < 1e-6, "{off}: {shown_stand:?} {played_stand:?}");
+    assert_eq!(shown["view"], played["view"]);
+}
+
+#[test]
+fn a_bad_recording_is_refused_with_its_line() {
+    let folder = folder();
+    let demonstration =
+        Demonstration::new(Phantom::Sphere.cube(24).unwrap().grid(), AnatomicalDirection::Superior);
+    let recording = demonstration.recording(wheatstone_core::head::Display::new(20.0).unwrap()).unwrap();
+    let mut text = Vec::new();
+    recording.write(&mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let mut lines: Vec<_> = text.lines().collect();
+    lines[4] = r#"{"time_s": "noon"}"#;
+    std::fs::write(folder.path().join("bad.jsonl"), lines.join("\n")).unwrap();
+    let args = ["sphere.nrrd", "--headset", "none", "--replay", "bad.jsonl"];
+    for command in [&["vr"][..], &["bench", "vr"]] {
+        let run = wheatstone(folder.path(), &[command, &args].concat());
+        assert_eq!(run.code, 2, "{run:?}");
+        let error = run.error();
+        assert!(error.contains("bad.jsonl") && error.contains("line 5"), "{error}");
+    }
+    let run = wheatstone(folder.path(), &["vr", "--headset", "none", "--replay", "none.jsonl"]);
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.error().contains("none.jsonl"));
+}
+
+#[test]
+fn a_bad_volume_is_refused_and_no_recording_is_left() {
+    let folder = folder();
+    std::fs::write(folder.path().join("bad.nrrd"), "no volume").unwrap();
+    let args = ["vr", "bad.nrrd", "--headset", "none", "--record", "session.jsonl"];
+    let run = wheatstone(folder.path(), &args);
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.error().contains("bad.nrrd"));
+    let left: Vec<_> =
+        std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name()).collect();
+    assert_eq!(left.len(), 2, "{left:?}");
+}
