@@ -15,6 +15,7 @@ mod remote;
 #[allow(dead_code, reason = "the tests of the headset itself use the rest")]
 #[path = "../../../xr/tests/headset/screenshot.rs"]
 mod screenshot;
+#[allow(dead_code, reason = "the tests that are not run yet use the rest")]
 mod support;
 
 mod endings;

@@ -109,11 +109,15 @@ fn check(place: &Place, name: &str, grid: &Grid, head: &Pose, pair: [(Frustum, P
             let by_the_other = other.view(view.size).pixel_position(mark).unwrap();
             assert!(by_the_other.distance(wanted) > 10.0, "{name}: the eyes see the same");
         }
-        assert!((1.0 - STRAY..=1.0 + STRAY).contains(&(of_marks / all)), "{name}, {side}: {of_marks} of {all}");
+        assert!(
+            (1.0 - STRAY..=1.0 + STRAY).contains(&(of_marks / all)),
+            "{name}, {side}: {of_marks} of {all}"
+        );
     }
 }
 
 #[test]
+#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn marks_are_seen_by_each_eye_where_its_lens_and_place_put_them() {
     let Some(place) = Place::start(Compositor::Null) else { return };
     let grid = Grid::centred(DIMS, SPACING_MM).unwrap();

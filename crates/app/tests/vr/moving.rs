@@ -43,6 +43,7 @@ fn dssims(report: &Value, wanted: impl Fn(&Value) -> bool) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn every_refresh_is_shown_and_is_what_the_eyes_should_see() {
     let Some(place) = Place::start(Compositor::Null) else { return };
     let phantom = ["phantom", "shepp-logan", "--size", "48", "-o", "head.nrrd"];
