@@ -81,9 +81,9 @@ fn carried_and_pulled(begin: &Stand) -> [Stand; 2] {
 fn aims(grid: &Grid, stand: &Stand) -> [Pose; 2] {
     let room_from_texture = stand.placement(grid, Superior).world_from_texture();
     let side_m = room_from_texture.matrix3.x_axis;
-    let orientation = DQuat::from_rotation_arc(DVec3::Z, side_m.normalize());
+    let orientation = DQuat::from_rotation_arc(DVec3::Z, side_m.normalize_or_zero());
     let before_m =
-        room_from_texture.transform_point3(DVec3::new(1.0, 0.5, 0.5)) + REACH_M * side_m.normalize();
+        room_from_texture.transform_point3(DVec3::new(1.0, 0.5, 0.5)) + REACH_M * side_m.normalize_or_zero();
     [before_m, before_m - CROP * side_m].map(|position_m| Pose { position_m, orientation })
 }
 
