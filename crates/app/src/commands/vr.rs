@@ -8,7 +8,7 @@ use crate::spec;
 use crate::transfer_spec;
 use crate::viewer::Source;
 use crate::viewer::command::Command;
-use crate::viewer::loading::{Arrived, Uploads};
+use crate::viewer::loading::{Arrived, Destination};
 use crate::viewer::session::{Session, Showing};
 use crate::viewer::state::{Edit, WarpName};
 use crate::volume_args::RawArgs;
@@ -202,7 +202,7 @@ fn mirror(connected: &Connected) -> Option<Mirror> {
 /// Reads and uploads what is to be shown at first, before a session begins that has no time for it.
 pub(super) fn open(source: Source, gpu: &Arc<Gpu>) -> Result<(Session, (Box<Arrived>, Showing)), Failure> {
     let _spinner = Bar::spinner("reading the volume");
-    let mut session = Session::begin(source, Arc::new(|| ()), Uploads::InTurn)?;
+    let mut session = Session::begin(source, Arc::new(|| ()), Destination::Headset)?;
     let arrived = load(&mut session, gpu)?;
     Ok((session, arrived))
 }

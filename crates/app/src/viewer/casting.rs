@@ -81,7 +81,7 @@ impl Casting {
         state: &State,
         aimed: Vec<View>,
     ) -> Result<(), Failure> {
-        let Arrived { facts, volume, mut skipping } = arrived;
+        let Arrived { facts, volume, mut skipping, .. } = arrived;
         let settings = Settings::of(state);
         let structure = skipping.as_ref().and_then(|skipping| skipping.at_rest(&state.look));
         let prepared =

@@ -4,7 +4,7 @@ use super::Opening;
 use super::canvas::Canvas;
 use super::cycle::Viewer;
 use super::job::Waker;
-use super::loading::Uploads;
+use super::loading::Destination;
 use super::report::Report;
 use super::script::Player;
 use super::session::Session;
@@ -26,7 +26,7 @@ pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
     let has_news = Arc::new(AtomicBool::new(false));
     let news = Arc::clone(&has_news);
     let wake: Waker = Arc::new(move || news.store(true, Ordering::Release));
-    let session = Session::begin(source, wake, Uploads::Beside)?.edited(&edits)?;
+    let session = Session::begin(source, wake, Destination::Window)?.edited(&edits)?;
     let gpu = Arc::new(Gpu::open_best()?);
     let mut canvas = Canvas::offscreen(&gpu, size)?;
     let mut viewer = Viewer::new(gpu, session, player, Context::default(), &canvas, begun)?;

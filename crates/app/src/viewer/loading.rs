@@ -10,6 +10,7 @@ use crate::volume_args::print_warnings;
 use anyhow::Context as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use wheatstone_core::reference::Caster;
 use wheatstone_core::skip::{Skip, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_io::{RawLayout, read_raw, read_volume};
@@ -29,12 +30,15 @@ pub(crate) struct Source {
 pub(crate) struct Read {
     volume: Volume,
     facts: Facts,
+    held: Option<Caster>,
 }
 
 /// A volume on the device.
 pub(crate) struct Arrived {
     pub(crate) facts: Facts,
     pub(crate) volume: GpuVolume,
+    /// The voxels, for a headset.
+    pub(crate) held: Option<Caster>,
     /// What skip maps are made with; none for a volume too small to skip any of.
     pub(crate) skipping: Option<Skipping>,
 }
@@ -68,13 +72,14 @@ pub(crate) enum Loading {
     Uploading(Job<Arrived>),
 }
 
-/// Which thread gives the device a volume.
+/// What a volume is loaded for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Uploads {
-    /// One of its own.
-    Beside,
-    /// The one that goes on with the load, for devices that take work from one thread only.
-    InTurn,
+pub(crate) enum Destination {
+    /// A window: the upload has a thread of its own.
+    Window,
+    /// A headset, the device of which takes work from one thread only: the one that goes on with the load uploads. Voxels are held on
+    /// the host as well, for what hands point at.
+    Headset,
 }
 
 /// How a load goes on.
@@ -85,12 +90,13 @@ pub(crate) enum Step {
 
 impl Loading {
     /// Begins to read.
-    pub(crate) fn begin(source: Source, wake: Waker) -> Result<Self, Failure> {
+    pub(crate) fn begin(source: Source, wake: Waker, destination: Destination) -> Result<Self, Failure> {
         let job = Job::begin("reading", wake, move |teller| {
             let volume = read(&source)?;
             teller.tell("measuring", None);
             let facts = Facts::of(&volume, source.file.as_deref());
-            Ok(Read { volume, facts })
+            let held = (destination == Destination::Headset).then(|| Caster::new(&volume));
+            Ok(Read { volume, facts, held })
         });
         Ok(Self::Reading(job.context("cannot begin to read")?))
     }
@@ -104,12 +110,12 @@ impl Loading {
     }
 
     /// Goes on as far as it can without waiting, but for an upload in turn.
-    pub(crate) fn step(self, gpu: &Arc<Gpu>, wake: &Waker, uploads: Uploads) -> Result<Step, Failure> {
+    pub(crate) fn step(self, gpu: &Arc<Gpu>, wake: &Waker, destination: Destination) -> Result<Step, Failure> {
         Ok(match self {
-            Self::Reading(mut job) => match (job.poll(), uploads) {
+            Self::Reading(mut job) => match (job.poll(), destination) {
                 (None, _) => Step::UnderWay(Self::Reading(job)),
-                (Some(read), Uploads::Beside) => Step::UnderWay(Self::upload(read?, gpu, wake)?),
-                (Some(read), Uploads::InTurn) => Step::Done(Box::new(upload(gpu, read?, &|_| ())?)),
+                (Some(read), Destination::Window) => Step::UnderWay(Self::upload(read?, gpu, wake)?),
+                (Some(read), Destination::Headset) => Step::Done(Box::new(upload(gpu, read?, &|_| ())?)),
             },
             Self::Uploading(mut job) => match job.poll() {
                 Some(arrived) => Step::Done(Box::new(arrived?)),
@@ -138,7 +144,7 @@ fn read(source: &Source) -> Result<Volume, Failure> {
 }
 
 fn upload(gpu: &Gpu, read: Read, tell: &dyn Fn(f32)) -> Result<Arrived, Failure> {
-    let Read { volume, facts } = read;
+    let Read { volume, facts, held } = read;
     let storage = StorageKind::lossless_for(&volume);
     let format = TexelFormat::for_volume(&volume, storage, gpu);
     let on_device =
@@ -152,5 +158,5 @@ fn upload(gpu: &Gpu, read: Read, tell: &dyn Fn(f32)) -> Result<Arrived, Failure>
         }
         None => None,
     };
-    Ok(Arrived { facts, volume: on_device, skipping })
+    Ok(Arrived { facts, volume: on_device, held, skipping })
 }

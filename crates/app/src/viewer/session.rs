@@ -4,7 +4,7 @@ use super::capture::{Capture, Subject, Turntable};
 use super::command::Command;
 use super::facts::Facts;
 use super::job::{Progress, Waker};
-use super::loading::{Arrived, Loading, Source, Step, Uploads};
+use super::loading::{Arrived, Loading, Source, Step, Destination};
 use super::notes::Notes;
 use super::state::{Clip, Edit, State};
 use super::text_file::read_text_file;
@@ -27,7 +27,7 @@ pub(crate) struct Session {
     source: Source,
     pending: Option<Pending>,
     wake: Waker,
-    uploads: Uploads,
+    destination: Destination,
     pub(crate) notes: Notes,
     captures: Vec<Capture>,
     turntable: Option<Turntable>,
@@ -58,7 +58,7 @@ struct Pending {
 
 impl Session {
     /// Begins with a volume or a saved view on its way.
-    pub(crate) fn begin(source: Source, wake: Waker, uploads: Uploads) -> Result<Self, Failure> {
+    pub(crate) fn begin(source: Source, wake: Waker, destination: Destination) -> Result<Self, Failure> {
         let source = Source { file: source.file.as_deref().map(absolute), ..source };
         let mut session = Self {
             state: State::default(),
@@ -66,7 +66,7 @@ impl Session {
             source: source.clone(),
             pending: None,
             wake,
-            uploads,
+            destination,
             notes: Notes::default(),
             captures: Vec::new(),
             turntable: None,
@@ -123,7 +123,7 @@ impl Session {
     /// Goes on with a load; what has arrived is to be prepared, then shown or refused.
     pub(crate) fn step(&mut self, gpu: &Arc<Gpu>) -> Option<(Box<Arrived>, Showing)> {
         let Pending { source, loading, view } = self.pending.take()?;
-        let step = loading.step(gpu, &self.wake, self.uploads).and_then(|step| match step {
+        let step = loading.step(gpu, &self.wake, self.destination).and_then(|step| match step {
             Step::UnderWay(loading) => {
                 self.pending = Some(Pending { source, loading, view });
                 Ok(None)
@@ -248,7 +248,7 @@ impl Session {
     }
 
     fn load(&mut self, source: Source, view: Option<State>) -> Result<(), Failure> {
-        let loading = Loading::begin(source.clone(), Arc::clone(&self.wake))?;
+        let loading = Loading::begin(source.clone(), Arc::clone(&self.wake), self.destination)?;
         self.pending = Some(Pending { source, loading, view });
         Ok(())
     }
@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn a_session_begins_with_an_absolute_path() {
         let source = Source { file: Some("missing.nrrd".into()), layout: None };
-        let session = Session::begin(source, Arc::new(|| ()), Uploads::Beside).unwrap();
+        let session = Session::begin(source, Arc::new(|| ()), Destination::Window).unwrap();
         assert!(session.pending.unwrap().source.file.unwrap().is_absolute());
     }
 
@@ -317,7 +317,7 @@ mod tests {
         let view = folder.path().join("view.json");
         std::fs::write(&view, State::default().to_json().unwrap()).unwrap();
         let source = Source { file: Some(view), layout: None };
-        let session = Session::begin(source, Arc::new(|| ()), Uploads::Beside).unwrap();
+        let session = Session::begin(source, Arc::new(|| ()), Destination::Window).unwrap();
         let session = session.edited(&[Edit::Refresh(17.0)]).unwrap();
         assert_eq!(session.state.pace.refresh_ms, 17.0);
         assert_eq!(session.pending.unwrap().view.unwrap().pace.refresh_ms, 17.0);
@@ -326,7 +326,7 @@ mod tests {
     #[test]
     fn of_files_dropped_together_the_first_is_opened_and_the_others_are_told_of() {
         let source = Source { file: Some("missing.nrrd".into()), layout: None };
-        let mut session = Session::begin(source, Arc::new(|| ()), Uploads::Beside).unwrap();
+        let mut session = Session::begin(source, Arc::new(|| ()), Destination::Window).unwrap();
         session.perform(&Command::Drop(vec!["a.dcm".into(), "b.dcm".into(), "c.dcm".into()]));
         assert!(session.pending.as_ref().unwrap().source.file.as_ref().unwrap().ends_with("a.dcm"));
         let told = &session.notes.latest()[0].text;
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn a_volume_that_is_refused_leaves_everything_as_it_was() {
         let source = Source { file: None, layout: None };
-        let mut session = Session::begin(source.clone(), Arc::new(|| ()), Uploads::Beside).unwrap();
+        let mut session = Session::begin(source.clone(), Arc::new(|| ()), Destination::Window).unwrap();
         let grid = Grid::centred([2, 2, 2], [1.0; 3]).unwrap();
         let volume = Volume::new(grid, Voxels::U8((0..8).collect())).unwrap();
         let facts = Facts::of(&volume, Some(Path::new("b.nrrd")));
@@ -361,7 +361,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let picture = Command::Picture(folder.path().join("a.png"));
         let source = Source { file: Some("missing.nrrd".into()), layout: None };
-        let mut session = Session::begin(source, Arc::new(|| ()), Uploads::Beside).unwrap();
+        let mut session = Session::begin(source, Arc::new(|| ()), Destination::Window).unwrap();
         session.perform(&picture);
         assert!(session.is_capturing());
         session.pending = None;

@@ -3,7 +3,7 @@
 use super::canvas::Canvas;
 use super::cycle::Viewer;
 use super::job::Waker;
-use super::loading::Uploads;
+use super::loading::Destination;
 use super::report::Report;
 use super::session::Session;
 use super::{Opening, Player};
@@ -29,7 +29,7 @@ pub(crate) fn run(opening: Opening) -> Result<Report, Failure> {
     let proxy = event_loop.create_proxy();
     let wake: Waker = Arc::new(move || drop(proxy.send_event(Wake)));
     let Opening { source, edits, player, size, begun } = opening;
-    let session = Session::begin(source, wake, Uploads::Beside)?.edited(&edits)?;
+    let session = Session::begin(source, wake, Destination::Window)?.edited(&edits)?;
     let mut app = App { stage: Stage::Before(Some(Box::new(Before { session, player, size, begun }))) };
     event_loop.run_app(&mut app).context("the window's event loop")?;
     match app.stage {

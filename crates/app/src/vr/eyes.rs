@@ -14,15 +14,20 @@ pub(crate) fn upright_views(eyes: &[Eye; 2], stand: &Stand, sizes: [[u32; 2]; 2]
 }
 
 fn upright_eye(eye: &Eye, stand: &Stand) -> Eye {
-    let upright_from_room = stand.pose.orientation.inverse();
     let per_side = stand.longest_side_m.recip();
     let Frustum { near_m, far_m, .. } = eye.frustum;
     Eye {
-        pose: Pose {
-            position_m: per_side * (upright_from_room * (eye.pose.position_m - stand.pose.position_m)),
-            orientation: (upright_from_room * eye.pose.orientation).normalize(),
-        },
+        pose: upright_pose(&eye.pose, stand),
         frustum: Frustum { near_m: per_side * near_m, far_m: per_side * far_m, ..eye.frustum },
+    }
+}
+
+/// A pose in the room as it is in the upright space of a volume that stands somewhere.
+pub(crate) fn upright_pose(pose: &Pose, stand: &Stand) -> Pose {
+    let upright_from_room = stand.pose.orientation.inverse();
+    Pose {
+        position_m: upright_from_room * (pose.position_m - stand.pose.position_m) / stand.longest_side_m,
+        orientation: (upright_from_room * pose.orientation).normalize(),
     }
 }
 

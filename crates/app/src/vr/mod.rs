@@ -13,6 +13,7 @@ mod mirror;
 #[cfg(any(target_os = "linux", target_os = "windows"))]
 mod openxr;
 mod panel;
+mod pointing;
 mod record;
 mod replay;
 mod report;

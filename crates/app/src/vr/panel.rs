@@ -30,8 +30,8 @@ pub(crate) struct Told<'a> {
     pub(crate) volume: &'a str,
     /// Mode, window and preset.
     pub(crate) look: &'a str,
-    /// What the hands point at.
-    pub(crate) values: [Option<&'a str>; 2],
+    /// Under the hands' pointers, in the file's unit.
+    pub(crate) values: [Option<f64>; 2],
     pub(crate) refreshes: &'a str,
     pub(crate) notes: &'a [String],
     pub(crate) timings: &'a Timings,
@@ -94,7 +94,7 @@ fn lay_out(ui: &mut Ui, told: &Told<'_>) {
     ui.label(told.look);
     for (hand, value) in ["left", "right"].into_iter().zip(told.values) {
         if let Some(value) = value {
-            ui.label(format!("{hand} hand at {value}"));
+            ui.label(format!("{hand} hand at {value:.4}"));
         }
     }
     ui.label(told.refreshes);
@@ -119,4 +119,42 @@ fn graph(ui: &mut Ui, timings: &Timings, period_ms: f32) {
         painter.rect_filled(bar, 0.0, color);
     }
     painter.hline(rect.x_range(), at(period_ms), (1.0, Color32::WHITE));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::Shape;
+
+    /// All texts of a layout.
+    fn texts(told: &Told<'_>) -> Vec<String> {
+        let context = Context::default();
+        let output = context.run_ui(RawInput::default(), |ui| lay_out(ui, told));
+        let text = |shape: &Shape| match shape {
+            Shape::Text(text) => Some(text.galley.text().to_owned()),
+            _ => None,
+        };
+        let texts = output.shapes.iter().filter_map(|clipped| text(&clipped.shape)).collect();
+        output.drop_without_applying_deltas();
+        texts
+    }
+
+    #[test]
+    fn the_panel_tells_the_value_under_each_pointer_that_meets_something() {
+        let timings = Timings::default();
+        let told = |values| Told {
+            volume: "a volume",
+            look: "",
+            values,
+            refreshes: "",
+            notes: &[],
+            timings: &timings,
+            period_ms: 11.0,
+        };
+        let right = texts(&told([None, Some(127.5)]));
+        assert!(right.contains(&"a volume".to_owned()), "{right:?}");
+        assert!(right.contains(&"right hand at 127.5000".to_owned()), "{right:?}");
+        assert!(!right.iter().any(|text| text.contains("left hand")), "{right:?}");
+        assert!(!texts(&told([None; 2])).iter().any(|text| text.contains("hand")));
+    }
 }

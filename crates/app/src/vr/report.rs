@@ -20,6 +20,8 @@ pub(crate) struct Report {
     /// Pictures of both eyes that were cast whole.
     pub(crate) pictures: u64,
     pub(crate) stand: Option<Stand>,
+    /// What the left and the right hand pointed at last, in the file's unit.
+    pub(crate) values_under_hands: [Option<f64>; 2],
     /// The view as it was left, in the form of saved views.
     pub(crate) view: Value,
     pub(crate) checked: Vec<Checked>,
@@ -75,6 +77,7 @@ impl Report {
                 "orientation": stand.pose.orientation.to_array(),
                 "longest_side_m": stand.longest_side_m,
             })),
+            "values_under_hands": self.values_under_hands,
             "view": self.view,
             "failures": self.failures,
             "ended": self.ended,

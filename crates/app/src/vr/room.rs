@@ -6,6 +6,7 @@ use super::hands::Hands;
 use super::headset::{Headset, Moment, Sight};
 use super::ladder::Ladder;
 use super::panel::{Panel, Told};
+use super::pointing::Pointing;
 use super::report::Report;
 use super::stage::{ColoredLine, Scenery, Stage};
 use crate::failure::Failure;
@@ -20,7 +21,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 use wheatstone_core::head::Pose;
 use wheatstone_core::headset::{Eye, Interaction, Scale, Side, Stand, Tick, floor, horizon};
-use wheatstone_core::view::View;
+use wheatstone_core::scene::Placement;
+use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_render::Gpu;
 
 /// How long a headset that wants no pictures is left alone.
@@ -116,6 +118,7 @@ pub(crate) struct Room {
     stage: Stage,
     panel: Panel,
     hands: Option<Hands>,
+    pointing: Option<Pointing>,
     ladder: Ladder,
     checks: Option<Checks>,
     scale: Scale,
@@ -148,6 +151,7 @@ impl Room {
             stage: Stage::new(gpu.device(), headset.image_format()),
             panel: Panel::new(&gpu, headset.image_format()),
             hands: None,
+            pointing: None,
             ladder: Ladder::default(),
             checks: checks.map(|checking| Checks::new(&gpu, checking)).transpose()?,
             scale,
@@ -217,6 +221,7 @@ impl Room {
         let tick = *sight.tick();
         self.receive(&tick, sizes)?;
         let grabbed = self.follow_hands(&tick);
+        self.point(&tick)?;
         let Some(eyes) = tick.eyes else {
             self.tick = Some(tick);
             return Ok(grabbed);
@@ -258,7 +263,7 @@ impl Room {
     fn receive(&mut self, tick: &Tick, sizes: [[u32; 2]; 2]) -> Result<(), Failure> {
         // Until the head is tracked nobody knows where to put it.
         let Some(eyes) = tick.eyes else { return Ok(()) };
-        let Some((arrived, showing)) = self.arrived.take().or_else(|| self.session.step(&self.gpu)) else {
+        let Some((mut arrived, showing)) = self.arrived.take().or_else(|| self.session.step(&self.gpu)) else {
             return Ok(());
         };
         let (grid, up) = (arrived.facts.grid.clone(), showing.state.look.up.direction());
@@ -269,6 +274,7 @@ impl Room {
             (None, None) => Stand::before(&between, &grid, up, self.scale),
         };
         let views = upright_views(&eyes, &stand, largest(sizes)).to_vec();
+        let held = arrived.held.take();
         match self.casting.receive(&self.gpu, *arrived, &showing.state, views.clone()) {
             Ok(()) => {
                 self.aimed = views;
@@ -277,6 +283,8 @@ impl Room {
                 self.session.show(showing);
                 let interaction = Interaction::new(&grid, up, stand, &clip);
                 self.hands = Some(Hands::new(interaction, self.session.state()));
+                let placement = Placement::of_grid(&grid, world_from_patient(&grid, up));
+                self.pointing = held.map(|caster| Pointing::new(caster, placement));
                 for command in std::mem::take(&mut self.commands) {
                     self.session.perform(&command);
                 }
@@ -295,6 +303,15 @@ impl Room {
         let (commands, grabbed) = hands.update(tick, self.session.state());
         commands.iter().for_each(|command| self.session.perform(command));
         grabbed
+    }
+
+    /// Looks up what the hands point at.
+    fn point(&mut self, tick: &Tick) -> Result<(), Failure> {
+        if let (Some(pointing), Some(hands)) = (&mut self.pointing, &self.hands) {
+            self.report.values_under_hands =
+                pointing.values_under(&tick.hands, hands.stand(), self.session.state())?;
+        }
+        Ok(())
     }
 
     /// Has the next picture cast from where the eyes are, unless that would be the same.
@@ -353,7 +370,7 @@ impl Room {
         let told = Told {
             volume: &self.report.volume,
             look: &look,
-            values: [None; 2],
+            values: self.report.values_under_hands,
             refreshes: &refreshes,
             notes: if notes.is_empty() { &self.told } else { &notes },
             timings: &self.timings,

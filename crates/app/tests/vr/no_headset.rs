@@ -1,14 +1,16 @@
 //! Without a headset: a demonstration, and recordings.
 
 use crate::support::{distance, folder, recorded, stand_of, wheatstone};
+use glam::DVec3;
 use serde_json::Value;
 use wheatstone_core::headset::Demonstration;
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::transfer::Preset;
 use wheatstone_core::view::AnatomicalDirection;
+use wheatstone_core::volume::Grid;
 
 /// All keys of a row of `bench vr --json`.
-const KEYS: [&str; 21] = [
+const KEYS: [&str; 22] = [
     "checked",
     "draw_ms_median",
     "draw_ms_p99",
@@ -26,6 +28,7 @@ const KEYS: [&str; 21] = [
     "refreshes",
     "shown",
     "stand",
+    "values_under_hands",
     "view",
     "volume",
     "warp",
@@ -64,6 +67,61 @@ fn a_demonstration_ends_where_it_is_to() {
     let first = Preset::all().next().unwrap().name();
     let by_flag = wheatstone(folder.path(), &[&bench[..], &["--tf", first, "--refreshes", "1"]].concat());
     assert_eq!(row["view"]["transfer"], by_flag.json()["rows"][0]["view"]["transfer"]);
+}
+
+/// Side of a cube of values that rise by `RISE` from voxel to voxel along the first axis.
+const RISING: usize = 24;
+const RISE: f64 = 10.0;
+
+/// Where a ray that comes from outside enters a box, by the slabs that its faces bound; nowhere if it passes by.
+fn entry(origin: DVec3, direction: DVec3, [lo, hi]: [DVec3; 2]) -> Option<DVec3> {
+    let (a, b) = ((lo - origin) / direction, (hi - origin) / direction);
+    let (enters, leaves) = (a.min(b).max_element(), a.max(b).min_element());
+    (0.0 <= enters && enters <= leaves).then(|| origin + enters * direction)
+}
+
+#[test]
+fn hands_point_at_the_values_where_they_meet_the_volume() {
+    let folder = folder();
+    let header = format!(
+        "NRRD0004\ntype: float\ndimension: 3\nsizes: {RISING} {RISING} {RISING}\nencoding: raw\nendian: little\n\n"
+    );
+    let voxel = |index: usize| ((index % RISING) as f64 * RISE) as f32;
+    let voxels = (0..RISING.pow(3)).flat_map(|index| voxel(index).to_le_bytes());
+    let file: Vec<u8> = header.into_bytes().into_iter().chain(voxels).collect();
+    std::fs::write(folder.path().join("rising.nrrd"), file).unwrap();
+
+    // The face has been dragged, and the stick not yet flicked: everything is still opaque.
+    let args = ["bench", "vr", "rising.nrrd", "--size", "32x32", "--patient", "--json", "--tf", "ramp:0..0"];
+    let end = ["--refresh-hz", "25", "--refreshes", "240", "--check-every", "1000"];
+    let report = wheatstone(folder.path(), &[&args[..], &end].concat()).json();
+    let row = &report["rows"][0];
+
+    let grid = Grid::centred([RISING; 3], [1.0; 3]).unwrap();
+    let demonstration = Demonstration::new(&grid, AnatomicalDirection::Superior);
+    let outcome = demonstration.outcome();
+    let placement = outcome.stand.placement(&grid, AnatomicalDirection::Superior);
+    let visible = [outcome.clip.box_lo, outcome.clip.box_hi];
+    let tick = demonstration.tick_at(9.56, 0.04);
+    let mut met = 0;
+    for (side, hand) in tick.hands.iter().enumerate() {
+        let aim = hand.aim.unwrap();
+        let origin = placement.texture_from_world().transform_point3(aim.position_m);
+        let direction = placement.texture_from_world().transform_vector3(aim.orientation * DVec3::NEG_Z);
+        let value = row["values_under_hands"][side].as_f64();
+        let Some(entry) = entry(origin, direction, visible) else {
+            assert_eq!(value, None, "hand {side}");
+            continue;
+        };
+        // The first sample is in the middle of the first step, which is no longer than a voxel.
+        let sample = entry + 0.5 * direction.normalize_or_zero() / RISING as f64;
+        let values = [entry, sample].map(|at| RISE * (at.x * RISING as f64 - 0.5));
+        let [least, most] = [values[0].min(values[1]), values[0].max(values[1])];
+        let value = value.unwrap();
+        assert!((least - 0.01..=most + 0.01).contains(&value), "hand {side}: {value} of {values:?}");
+        met += 1;
+    }
+    assert!(met > 0);
 }
 
 #[test]

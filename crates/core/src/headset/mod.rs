@@ -29,7 +29,7 @@ pub use grasp::LONGEST_SIDES_M;
 pub use hand::{Hand, Side};
 pub use interaction::{Changes, Interaction};
 pub use late::{Late, Second};
-pub use pointer::{Pointed, value_under};
+pub use pointer::{Pointed, pointing_settings, value_under};
 pub use recording::{LineError, Recorder, Recording, RecordingError, TickError};
 pub use stand::{Scale, Stand};
 pub use surroundings::{Line, floor, horizon};

@@ -1,9 +1,9 @@
 //! What a hand points at in the volume.
 
-use crate::cast::CastParameters;
+use crate::cast::{CastParameters, FIRST_HIT_ALPHA};
 use crate::head::Pose;
 use crate::reference::{Aids, Caster};
-use crate::scene::Mode;
+use crate::scene::{Mode, Settings, Shading};
 use crate::view::{Frustum, Projection, View};
 use glam::DVec3;
 
@@ -25,7 +25,8 @@ pub struct Pointed {
 /// would have in the middle of its only pixel. That is the first hit of composites and isosurfaces, and the extreme of maximum and
 /// minimum projections. `None` if the aim is none or meets nothing, and for means and X-rays, which see no place of their own.
 ///
-/// It costs one ray of the reference caster, which takes the place of the volume: it holds the voxels itself.
+/// It costs one ray of the reference caster, which takes the place of the volume: it holds the voxels itself. Parameters of
+/// [`pointing_settings`] make that ray short.
 pub fn value_under(aim: &Pose, caster: &Caster, parameters: &CastParameters) -> Option<Pointed> {
     if matches!(parameters.mode, Mode::Mean | Mode::XRay) {
         return None;
@@ -52,4 +53,9 @@ pub fn value_under(aim: &Pose, caster: &Caster, parameters: &CastParameters) -> 
         let point_in_texture = parameters.texture_from_world.transform_point3(point_m);
         Pointed { point_m, distance_m, value: caster.value_at(point_in_texture) }
     })
+}
+
+/// The same settings but for what does not change where [`value_under`] meets something: nothing is lit, and rays end where it is met.
+pub fn pointing_settings(settings: Settings) -> Settings {
+    Settings { shading: Shading::None, early_termination: Some(FIRST_HIT_ALPHA), ..settings }
 }

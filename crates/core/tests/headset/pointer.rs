@@ -5,10 +5,10 @@ use glam::{DAffine3, DQuat, DVec3};
 use proptest::prelude::*;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::value_under;
+use wheatstone_core::headset::{pointing_settings, value_under};
 use wheatstone_core::phantom::{Phantom, SPHERE_RADIUS};
 use wheatstone_core::reference::Caster;
-use wheatstone_core::scene::{Clip, ClipPlane, Mode, Placement, Settings};
+use wheatstone_core::scene::{Clip, ClipPlane, Mode, Placement, Settings, Shading};
 use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::volume::{Grid, Volume, Voxels, Window};
 
@@ -45,6 +45,26 @@ proptest! {
             prop_assert!((pointed.point_m - aimed(from).position_m).length() - pointed.distance_m < 1e-9);
             prop_assert!((pointed.value - 127.5).abs() < 12.0, "{:?}", pointed);
         }
+    }
+}
+
+#[test]
+fn settings_for_pointing_meet_the_same_place() {
+    let volume = Phantom::Sphere.cube(SIDE).unwrap();
+    let placement = Placement::new(&volume, world_from_patient());
+    let caster = Caster::new(&volume);
+    let soft = TransferFunction::ramp(0.1, 1.0).unwrap();
+    for mode in [Mode::Composite, Mode::Isosurface { isovalue: 0.5 }, Mode::Mip] {
+        let lit = Settings {
+            transfer: soft.clone(),
+            shading: Shading::Directional { directions: 3 },
+            ..settings(mode)
+        };
+        let [all, pointing] = [lit.clone(), pointing_settings(lit)].map(|settings| {
+            let parameters = CastParameters::new(&settings, &placement);
+            value_under(&aimed(DVec3::new(0.3, 0.8, 1.1)), &caster, &parameters).unwrap()
+        });
+        assert_eq!(all, pointing, "{mode:?}");
     }
 }
 
