@@ -67,4 +67,3 @@ pub use runtime::{Runtime, RuntimeDescription};
 pub use session::{Phase, Session, SessionOptions};
 pub use space::Floor;
 pub use state::EndReason;
-pub use visibility_mask::HiddenArea;

@@ -4,26 +4,16 @@ use crate::error::{Called, XrError};
 use crate::runtime::STEREO;
 use crate::session::Session;
 use openxr as xr;
+use wheatstone_core::headset::HiddenArea;
 
-/// The part of an eye's picture that cannot be seen, as triangles.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct HiddenArea {
-    /// Corners: x / −z and y / −z in the eye's view space, as the tangents of a [`Frustum`](wheatstone_core::view::Frustum).
-    pub corners: Vec<[f32; 2]>,
-    /// Indices of the corners of each triangle.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl HiddenArea {
-    /// Sorts what a runtime gives into triangles; none if it makes no sense.
-    fn new(mask: &xr::VisibilityMask) -> Option<Self> {
-        let corners: Vec<_> = mask.vertices.iter().map(|vertex| [vertex.x, vertex.y]).collect();
-        let (triangles, rest) = mask.indices.as_chunks::<3>();
-        let makes_sense = rest.is_empty()
-            && corners.as_flattened().iter().all(|tangent| tangent.is_finite())
-            && mask.indices.iter().all(|&index| (index as usize) < corners.len());
-        makes_sense.then(|| Self { corners, triangles: triangles.to_vec() })
-    }
+/// Sorts what a runtime gives into triangles; none if it makes no sense.
+fn hidden_area(mask: &xr::VisibilityMask) -> Option<HiddenArea> {
+    let corners: Vec<_> = mask.vertices.iter().map(|vertex| [vertex.x, vertex.y]).collect();
+    let (triangles, rest) = mask.indices.as_chunks::<3>();
+    let makes_sense = rest.is_empty()
+        && corners.as_flattened().iter().all(|tangent| tangent.is_finite())
+        && mask.indices.iter().all(|&index| (index as usize) < corners.len());
+    makes_sense.then(|| HiddenArea { corners, triangles: triangles.to_vec() })
 }
 
 impl Session {
@@ -40,7 +30,7 @@ impl Session {
             .handle
             .get_visibility_mask_khr(STEREO, eye, xr::VisibilityMaskTypeKHR::HIDDEN_TRIANGLE_MESH)
             .called("xrGetVisibilityMaskKHR")?;
-        Ok(HiddenArea::new(&mask))
+        Ok(hidden_area(&mask))
     }
 }
 
@@ -56,17 +46,17 @@ mod tests {
     #[test]
     fn triangles_are_three_corners_each() {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0], [2.0, 2.0]];
-        let area = HiddenArea::new(&mask(&corners, &[0, 1, 2, 1, 3, 2])).unwrap();
+        let area = hidden_area(&mask(&corners, &[0, 1, 2, 1, 3, 2])).unwrap();
         assert_eq!(area.corners, corners);
         assert_eq!(area.triangles, [[0, 1, 2], [1, 3, 2]]);
-        assert_eq!(HiddenArea::new(&mask(&[], &[])), Some(HiddenArea::default()));
+        assert_eq!(hidden_area(&mask(&[], &[])), Some(HiddenArea::default()));
     }
 
     #[test]
     fn what_makes_no_sense_is_none() {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]];
-        assert_eq!(HiddenArea::new(&mask(&corners, &[0, 1])), None);
-        assert_eq!(HiddenArea::new(&mask(&corners, &[0, 1, 3])), None);
-        assert_eq!(HiddenArea::new(&mask(&[[f32::NAN, 0.0]; 3], &[0, 1, 2])), None);
+        assert_eq!(hidden_area(&mask(&corners, &[0, 1])), None);
+        assert_eq!(hidden_area(&mask(&corners, &[0, 1, 3])), None);
+        assert_eq!(hidden_area(&mask(&[[f32::NAN, 0.0]; 3], &[0, 1, 2])), None);
     }
 }

@@ -1,12 +1,13 @@
 //! `bench vr`: how well refreshes of a headset are kept, and how far what they show is from what they should.
 
-use super::vr::{CheckArgs, EYE, HeadsetName, checked_transfer, clock, open, played, read_recording};
+use super::vr::{CheckArgs, EYE, HeadsetName, checked_transfer, clock, layers, open, played, read_recording};
 use crate::failure::Failure;
+use crate::layering::LayeringArgs;
 use crate::output::{print, print_json};
 use crate::spec;
 use crate::viewer::Source;
 use crate::viewer::command::Command;
-use crate::viewer::state::{Edit, WarpName};
+use crate::viewer::state::{Edit, EyeMethod, WarpName};
 use crate::vr::{Beside, Connected, Guided, OpenXr, Opening, Replay, Report, Room, run as show};
 use clap::Args;
 use serde_json::json;
@@ -71,6 +72,14 @@ pub(crate) struct VrBenchArgs {
     refreshes: Option<u64>,
 
     #[command(flatten)]
+    layering: LayeringArgs,
+
+    /// Where the eyes' pictures come from; canted displays need two casts, and get them [default: as a saved view says, else
+    /// two-casts].
+    #[arg(long, value_enum)]
+    eye_method: Option<EyeMethod>,
+
+    #[command(flatten)]
     check: CheckArgs,
 
     /// Print one JSON object on standard output instead of lines.
@@ -122,6 +131,8 @@ impl VrBenchArgs {
         let source = Source { file: Some(volume.to_owned()), layout: None };
         let recording = self.replay.as_deref().map(read_recording).transpose()?;
         let mut commands: Vec<Command> = vec![Edit::Warp(warp).into(), Edit::Shading(self.shading).into()];
+        commands.extend(layers(&self.layering)?);
+        commands.extend(self.eye_method.map(|method| Edit::EyeMethod(method).into()));
         commands.extend(self.tf.clone().map(Command::Preset));
         let opening = |(session, arrived), stand| Opening {
             session,

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::layering::LayeringArgs;
 use crate::output::{print, print_json};
 use crate::progress::Bar;
 use crate::spec;
@@ -10,7 +11,7 @@ use crate::viewer::Source;
 use crate::viewer::command::Command;
 use crate::viewer::loading::{Arrived, Destination};
 use crate::viewer::session::{Session, Showing};
-use crate::viewer::state::{Edit, WarpName};
+use crate::viewer::state::{Edit, EyeMethod, Layers, WarpName};
 use crate::volume_args::RawArgs;
 use crate::vr::{
     Beside, Checking, Clock, Connected, Guided, Mirror, OpenXr, Opening, Played, Record, Replay, Room, load,
@@ -90,6 +91,14 @@ pub(crate) struct VrArgs {
     patient: bool,
 
     #[command(flatten)]
+    layering: LayeringArgs,
+
+    /// Where the eyes' pictures come from; canted displays need two casts, and get them [default: as a saved view says, else
+    /// two-casts].
+    #[arg(long, value_enum)]
+    eye_method: Option<EyeMethod>,
+
+    #[command(flatten)]
     check: CheckArgs,
 
     /// Print what was measured as one JSON object when it ends.
@@ -137,6 +146,8 @@ pub(super) enum HeadsetName {
 pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let source = Source { file: args.file.clone(), layout: args.raw.layout() };
     let mut commands: Vec<Command> = vec![Edit::Warp(args.warp).into()];
+    commands.extend(layers(&args.layering)?);
+    commands.extend(args.eye_method.map(|method| Edit::EyeMethod(method).into()));
     commands.extend(args.tf.clone().map(Command::Preset));
     let record = args.record.as_deref().map(Record::begin).transpose()?;
     let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
@@ -186,6 +197,12 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         print(&report.to_lines())?;
     }
     Ok(())
+}
+
+/// What flags say of layers, whatever a saved view says.
+pub(super) fn layers(args: &LayeringArgs) -> Result<Option<Command>, Failure> {
+    let layers = Layers::from(&args.resolve()?);
+    Ok(args.is_given().then_some(Edit::Layers(layers).into()))
 }
 
 /// A window beside the headset, if there is a display; what is in its way is told.

@@ -1,10 +1,12 @@
 //! What each eye is shown: the newest whole picture, as it looks from where the eye is now.
 
+use super::lens::Lens;
 use super::novel_views::NovelViews;
 use super::state::WarpName;
 use crate::failure::Failure;
 use glam::DVec3;
 use wheatstone_core::budget::Quality;
+use wheatstone_core::headset::HiddenArea;
 use wheatstone_core::view::{Frustum, Projection, View};
 use wheatstone_core::warp::{GridSettings, Overlap, VolumetricSettings, WarpError};
 use wheatstone_render::Gpu;
@@ -38,6 +40,7 @@ pub(crate) struct Eyes {
     /// Made when first asked for.
     novel_views: Option<NovelViews>,
     pictures: Vec<Canvas>,
+    lenses: [Lens; 2],
     shown: Option<Wanted>,
     beyond_reach: BeyondReach,
     /// How rays step through layers.
@@ -169,6 +172,7 @@ impl Eyes {
             warps,
             novel_views: None,
             pictures: Vec::new(),
+            lenses: Default::default(),
             shown: None,
             beyond_reach,
             stepping: VolumetricSettings::default(),
@@ -180,6 +184,11 @@ impl Eyes {
         if self.stepping != stepping {
             (self.stepping, self.shown) = (stepping, None);
         }
+    }
+
+    /// From now on lenses hide something of what the left and the right eye are shown: it is left out.
+    pub(crate) fn hide(&mut self, hidden: &[HiddenArea; 2]) {
+        self.lenses.iter_mut().zip(hidden).for_each(|(lens, hidden)| lens.hide(hidden));
     }
 
     /// The same with something else beyond the reach of warps.
@@ -225,6 +234,11 @@ impl Eyes {
                 }
             };
             let mut into = self.take_picture(gpu, eye, view.size)?;
+            if let (Some(lens), Projection::Perspective(frustum)) =
+                (self.lenses.get_mut(eye), view.projection)
+            {
+                into.show_only(lens.visible(&frustum, view.size));
+            }
             match way {
                 Way::AsItIs | Way::Quad(_) => self.warps.quad(gpu, &mut encoder, &shown, &view, &mut into),
                 Way::Grid(_) => {

@@ -110,7 +110,12 @@ impl Loading {
     }
 
     /// Goes on as far as it can without waiting, but for an upload in turn.
-    pub(crate) fn step(self, gpu: &Arc<Gpu>, wake: &Waker, destination: Destination) -> Result<Step, Failure> {
+    pub(crate) fn step(
+        self,
+        gpu: &Arc<Gpu>,
+        wake: &Waker,
+        destination: Destination,
+    ) -> Result<Step, Failure> {
         Ok(match self {
             Self::Reading(mut job) => match (job.poll(), destination) {
                 (None, _) => Step::UnderWay(Self::Reading(job)),

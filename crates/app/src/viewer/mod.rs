@@ -14,6 +14,7 @@ mod facts;
 mod headless;
 pub(crate) mod job;
 mod latency;
+pub(crate) mod lens;
 pub(crate) mod loading;
 mod memory;
 mod notes;

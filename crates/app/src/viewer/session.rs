@@ -4,7 +4,7 @@ use super::capture::{Capture, Subject, Turntable};
 use super::command::Command;
 use super::facts::Facts;
 use super::job::{Progress, Waker};
-use super::loading::{Arrived, Loading, Source, Step, Destination};
+use super::loading::{Arrived, Destination, Loading, Source, Step};
 use super::notes::Notes;
 use super::state::{Clip, Edit, State};
 use super::text_file::read_text_file;

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use wheatstone_core::headset::{Eye, Side};
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::metrics::compare;
-use wheatstone_core::view::View;
+use wheatstone_core::view::{PixelRect, View};
 use wheatstone_render::Gpu;
 
 /// How far the shown picture's eye may be from the eye for a refresh to count as still, metres of the volume's longest side.
@@ -52,6 +52,7 @@ struct Kept {
     side: Side,
     image: wgpu::Texture,
     wanted: View,
+    visible: Vec<PixelRect>,
     moves: bool,
     state: State,
 }
@@ -64,6 +65,8 @@ pub(crate) struct Seen<'a> {
     /// From which the front picture was cast.
     pub(crate) cast_from: View,
     pub(crate) picture: &'a wgpu::TextureView,
+    /// The pixels that can be seen.
+    pub(crate) visible: &'a [PixelRect],
 }
 
 impl Checks {
@@ -87,25 +90,26 @@ impl Checks {
         if !self.refresh.is_multiple_of(self.checking.every) || is_enough {
             return Ok(());
         }
-        for (side, Seen { eye, wanted, cast_from, picture }) in Side::BOTH.into_iter().zip(seen) {
+        for (side, Seen { eye, wanted, cast_from, picture, visible }) in Side::BOTH.into_iter().zip(seen) {
             let image = canvas::texture(gpu, wanted.size, wgpu::TextureFormat::Rgba8Unorm)?;
             let view = image.create_view(&wgpu::TextureViewDescriptor::default());
-            let scenery = Scenery { picture: Some(picture), ..Scenery::default() };
+            let scenery = Scenery { picture: Some(picture), visible, ..Scenery::default() };
             self.stage.draw(gpu, encoder, &view, eye, [0.0; 3], &scenery);
             let eye_m = |view: &View| view.view_from_world.inverse().translation;
             let turned =
                 !wanted.view_from_world.matrix3.abs_diff_eq(cast_from.view_from_world.matrix3, STILL);
             let moves = turned || eye_m(&wanted).distance(eye_m(&cast_from)) > STILL;
-            let refresh = self.refresh;
-            self.kept.push(Kept { refresh, side, image, wanted, moves, state: state.clone() });
+            let (refresh, visible, state) = (self.refresh, visible.to_vec(), state.clone());
+            self.kept.push(Kept { refresh, side, image, wanted, visible, moves, state });
         }
         Ok(())
     }
 
     /// Casts what should have been seen, and writes what was.
     pub(crate) fn finish(self, gpu: &Gpu, casting: &mut Casting) -> Result<Vec<Checked>, Failure> {
-        let compare_one = |Kept { refresh, side, image, wanted, moves, state }: Kept| {
+        let compare_one = |Kept { refresh, side, image, wanted, visible, moves, state }: Kept| {
             let truth = casting.render(gpu, &state, wanted)?.over_background([0.0; 3]);
+            let truth = seen_through(truth, &visible);
             let texels: Vec<[u8; 4]> = gpu.read_texture(&image)?;
             let rgb = texels.iter().map(|&[r, g, b, _]| [r, g, b].map(|value| f32::from(value) / 255.0));
             let [width, height] = wanted.size;
@@ -119,6 +123,18 @@ impl Checks {
         };
         self.kept.into_iter().map(compare_one).collect()
     }
+}
+
+/// The same picture, black where it cannot be seen.
+fn seen_through(mut picture: RgbImage, visible: &[PixelRect]) -> RgbImage {
+    let width = picture.width as usize;
+    for (index, rgb) in picture.rgb.iter_mut().enumerate() {
+        let [x, y] = [index % width, index / width].map(|at| at as u32);
+        if !visible.iter().any(|rect| rect.columns.contains(&x) && rect.rows.contains(&y)) {
+            *rgb = [0.0; 3];
+        }
+    }
+    picture
 }
 
 /// An eye's name, in files and reports.

@@ -1,5 +1,6 @@
 //! The eyes in the volume's own space.
 
+use crate::viewer::state::EyeMethod;
 use glam::{DAffine3, DVec3};
 use wheatstone_core::head::Pose;
 use wheatstone_core::headset::{Eye, Stand};
@@ -8,9 +9,49 @@ use wheatstone_core::view::{Frustum, View};
 /// How far what is seen may move in a picture before another one is cast, pixels: the warp takes care of less.
 const UNSEEN_PX: f64 = 0.5;
 
+/// From which depth on both eyes see all that is cast for one in their middle, metres.
+const NEAREST_M: f64 = 0.25;
+
 /// The views of the eyes, left one first, in the upright space of a volume that stands somewhere.
 pub(crate) fn upright_views(eyes: &[Eye; 2], stand: &Stand, sizes: [[u32; 2]; 2]) -> [View; 2] {
     [0, 1].map(|eye: usize| upright_eye(&eyes[eye], stand).view(sizes[eye]))
+}
+
+/// What is cast for the eyes, in the upright space of a volume that stands somewhere, at no fewer pixels per angle than theirs: a view
+/// for each, or one in the middle for both, if that is asked for and image planes are parallel.
+pub(crate) fn cast_views(
+    method: EyeMethod,
+    eyes: &[Eye; 2],
+    stand: &Stand,
+    sizes: [[u32; 2]; 2],
+) -> (EyeMethod, Vec<View>) {
+    let middle = match method {
+        EyeMethod::OneCast => Eye::between(eyes, NEAREST_M),
+        EyeMethod::TwoCasts => None,
+    };
+    match middle {
+        Some(middle) => {
+            let size = size_as_fine(&middle.frustum, eyes, sizes);
+            (EyeMethod::OneCast, vec![upright_eye(&middle, stand).view(size)])
+        }
+        None => (EyeMethod::TwoCasts, upright_views(eyes, stand, largest(sizes)).to_vec()),
+    }
+}
+
+/// One size for both eyes' casts.
+fn largest([left, right]: [[u32; 2]; 2]) -> [[u32; 2]; 2] {
+    [[left[0].max(right[0]), left[1].max(right[1])]; 2]
+}
+
+/// Width and height at which a frustum has at least as many pixels per angle as eyes with pictures of some sizes.
+fn size_as_fine(frustum: &Frustum, eyes: &[Eye; 2], sizes: [[u32; 2]; 2]) -> [u32; 2] {
+    let extents = |f: &Frustum| [f.right - f.left, f.up - f.down];
+    [0, 1].map(|axis: usize| {
+        let per_tangent = |eye: usize| f64::from(sizes[eye][axis]) / extents(&eyes[eye].frustum)[axis];
+        let pixels = extents(frustum)[axis] * per_tangent(0).max(per_tangent(1));
+        // A cast to an integer keeps within its bounds.
+        (pixels - 1e-6).ceil() as u32
+    })
 }
 
 fn upright_eye(eye: &Eye, stand: &Stand) -> Eye {
@@ -56,7 +97,7 @@ mod tests {
 
     fn eye(position_m: DVec3) -> Eye {
         let frustum =
-            Frustum { left: -1.2, right: 0.9, down: -1.0, up: 1.1, near_m: 0.05, far_m: f64::INFINITY };
+            Frustum { left: -1.2, right: 0.9, down: -0.6, up: 1.05, near_m: 0.05, far_m: f64::INFINITY };
         Eye { pose: Pose { position_m, orientation: DQuat::from_rotation_y(0.2) }, frustum }
     }
 
@@ -86,5 +127,21 @@ mod tests {
         assert!(see_alike(&views(0.0), &views(1e-4), world_from_texture));
         assert!(!see_alike(&views(0.0), &views(0.01), world_from_texture));
         assert!(!see_alike(&views(0.0)[..1], &views(0.0), world_from_texture));
+    }
+
+    #[test]
+    fn one_cast_for_both_eyes_is_as_fine_as_theirs() {
+        let [left, mut right] = [-0.03, 0.03].map(|x| eye(DVec3::new(x, 1.6, 0.0)));
+        right.pose.position_m = left.pose.position_m + left.pose.orientation * (0.06 * DVec3::X);
+        let sizes = [[420, 330]; 2];
+        let (method, views) = cast_views(EyeMethod::OneCast, &[left, right], &stand(), sizes);
+        assert_eq!((method, views.len()), (EyeMethod::OneCast, 1));
+        // 200 pixels per tangent across, and 0.03 / 0.25 more on each side.
+        assert_eq!(views[0].size, [420 + 48, 330]);
+        let (method, views) = cast_views(EyeMethod::TwoCasts, &[left, right], &stand(), sizes);
+        assert_eq!((method, views.len(), views[1].size), (EyeMethod::TwoCasts, 2, [420, 330]));
+        right.pose.orientation *= DQuat::from_rotation_y(0.1);
+        let (method, views) = cast_views(EyeMethod::OneCast, &[left, right], &stand(), sizes);
+        assert_eq!((method, views.len()), (EyeMethod::TwoCasts, 2));
     }
 }

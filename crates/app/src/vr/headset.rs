@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use std::sync::Arc;
-use wheatstone_core::headset::{Side, Tick};
+use wheatstone_core::headset::{HiddenArea, Side, Tick};
 use wheatstone_render::Gpu;
 
 /// A headset, there or not.
@@ -18,6 +18,9 @@ pub(crate) trait Headset {
 
     /// Width and height of the eyes' pictures, pixels.
     fn eye_sizes(&self) -> [[u32; 2]; 2];
+
+    /// What lenses hide of the left and the right eye's pictures.
+    fn hidden_areas(&self) -> &[HiddenArea; 2];
 
     /// Waits for the next refresh, lets its pictures be drawn, and shows them. An error of what draws comes back as it is.
     fn refresh(

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::viewer::canvas::{Canvas, Sheet};
 use crate::viewer::screen::{Panels, Pictures, Screen};
 use crate::viewer::show::Area;
-use crate::viewer::ui::{Desk, Shown, dress};
+use crate::viewer::ui::{Desk, Shown, dress, run_passes};
 use crate::viewer::window::event_loop;
 use anyhow::Context as _;
 use egui::{Context, Rect, ViewportId};
@@ -119,9 +119,10 @@ impl Open {
         let input = self.input.take_egui_input(&self.window);
         let Mirrored { session, casting, timings, device, pictures } = room.mirrored();
         let notes = session.notes.latest().to_vec();
-        let mut commands = Vec::new();
+        let quality = casting.described_quality();
         let mut area = Rect::NOTHING;
-        let mut output = self.context.run_ui(input, |ui| {
+        let desk = &mut self.desk;
+        let mut output = run_passes(&self.context, input, |ui| {
             let shown = Shown {
                 state: session.state(),
                 facts: session.facts(),
@@ -130,13 +131,12 @@ impl Open {
                 notes: &notes,
                 timings,
                 device,
-                quality: &casting.described_quality(),
+                quality: &quality,
             };
-            let pass = self.desk.show(ui, &shown);
+            let pass = desk.show(ui, &shown);
             area = pass.picture;
-            commands.extend(pass.commands);
+            pass.commands.iter().for_each(|command| session.perform(command));
         });
-        commands.iter().for_each(|command| session.perform(command));
         let size = self.canvas.size();
         let state = session.state();
         let pictures = Pictures {

@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::{Side, Tick};
+use wheatstone_core::headset::{HiddenArea, Side, Tick};
 use wheatstone_render::Gpu;
 use wheatstone_xr::{
     Anchor, EndReason, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
@@ -21,6 +21,8 @@ pub(crate) struct OpenXr {
     session: Session,
     graphics: Graphics,
     runtime: String,
+    hidden: [HiddenArea; 2],
+    told: Vec<String>,
 }
 
 /// A runtime that has been connected to, and its device: what does not change when a session ends.
@@ -49,8 +51,30 @@ impl OpenXr {
         let options = SessionOptions { panel_px: Some(panel::SIZE), ..SessionOptions::default() };
         let session = Session::begin(&graphics, options)?;
         let runtime = graphics.runtime().description().name.clone();
-        Ok(Self { session, graphics, runtime })
+        let hidden = [hidden_area(&session, 0)?, hidden_area(&session, 1)?];
+        Ok(Self { session, graphics, runtime, hidden, told: Vec::new() })
     }
+
+    /// Takes note of what has happened.
+    fn take_note(&mut self) -> Result<(), Failure> {
+        let events: Vec<SessionEvent> = self.session.events().collect();
+        for event in &events {
+            match event {
+                &SessionEvent::HiddenAreaChanged { eye } => {
+                    if let Some(hidden) = self.hidden.get_mut(eye) {
+                        *hidden = hidden_area(&self.session, eye)?;
+                    }
+                }
+                other => self.told.extend(told(other)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What the lens hides of an eye's picture, as far as the runtime tells.
+fn hidden_area(session: &Session, eye: usize) -> Result<HiddenArea, Failure> {
+    Ok(session.hidden_area(eye)?.unwrap_or_default())
 }
 
 impl Headset for OpenXr {
@@ -70,11 +94,17 @@ impl Headset for OpenXr {
         self.session.eye_sizes()
     }
 
+    fn hidden_areas(&self) -> &[HiddenArea; 2] {
+        &self.hidden
+    }
+
     fn refresh(
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
     ) -> Result<Moment, Failure> {
-        match self.session.poll()? {
+        let phase = self.session.poll()?;
+        self.take_note()?;
+        match phase {
             Phase::Idle => Ok(Moment::Idle),
             Phase::Ended(EndReason::Exited) => Ok(Moment::Ended("the session was closed".to_owned())),
             Phase::Ended(EndReason::Lost) => {
@@ -94,7 +124,7 @@ impl Headset for OpenXr {
     }
 
     fn told(&mut self) -> Vec<String> {
-        self.session.events().filter_map(|event| told(&event)).collect()
+        std::mem::take(&mut self.told)
     }
 
     fn close(&mut self) -> Result<(), Failure> {

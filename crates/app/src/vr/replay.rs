@@ -6,7 +6,7 @@ use crate::viewer::canvas;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wheatstone_core::head::Display;
-use wheatstone_core::headset::{Demonstration, Eye, Recording, Side, Tick};
+use wheatstone_core::headset::{Demonstration, Eye, HiddenArea, Recording, Side, Tick};
 use wheatstone_render::Gpu;
 
 /// What is played.
@@ -52,6 +52,8 @@ pub(crate) struct Replay {
     /// The next that there may be.
     next: u64,
     is_closed: bool,
+    /// Nothing.
+    hidden: [HiddenArea; 2],
 }
 
 impl Replay {
@@ -65,7 +67,8 @@ impl Replay {
     ) -> Result<Self, Failure> {
         let eye = || canvas::texture(&gpu, size, wgpu::TextureFormat::Rgba8Unorm);
         let eyes = [eye()?, eye()?];
-        Ok(Self { played, display, eyes, begun: None, clock, next: 0, is_closed: false, gpu })
+        let hidden = Default::default();
+        Ok(Self { played, display, eyes, begun: None, clock, next: 0, is_closed: false, hidden, gpu })
     }
 }
 
@@ -84,6 +87,10 @@ impl Headset for Replay {
 
     fn eye_sizes(&self) -> [[u32; 2]; 2] {
         self.eyes.each_ref().map(|eye| [eye.width(), eye.height()])
+    }
+
+    fn hidden_areas(&self) -> &[HiddenArea; 2] {
+        &self.hidden
     }
 
     fn refresh(
@@ -156,6 +163,10 @@ impl<H: Headset> Headset for Guided<H> {
 
     fn eye_sizes(&self) -> [[u32; 2]; 2] {
         self.headset.eye_sizes()
+    }
+
+    fn hidden_areas(&self) -> &[HiddenArea; 2] {
+        self.headset.hidden_areas()
     }
 
     fn refresh(

@@ -1,6 +1,7 @@
 //! What a session tells when it ends.
 
 use super::check::{Checked, name};
+use crate::viewer::state::EyeMethod;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -17,6 +18,10 @@ pub(crate) struct Report {
     pub(crate) draws: Vec<Duration>,
     /// Refreshes by the warp that showed them.
     pub(crate) warps: BTreeMap<&'static str, u32>,
+    /// How the newest picture comes to both eyes.
+    pub(crate) eye_method: EyeMethod,
+    /// Whether one cast was asked for, which canted displays cannot have.
+    pub(crate) is_canted: bool,
     /// Pictures of both eyes that were cast whole.
     pub(crate) pictures: u64,
     pub(crate) stand: Option<Stand>,
@@ -72,6 +77,8 @@ impl Report {
                 "moves": checked.moves,
                 "dssim": checked.dssim,
             })).collect::<Vec<_>>(),
+            "eye_method": self.eye_method,
+            "canted": self.is_canted,
             "stand": self.stand.map(|stand| json!({
                 "position_m": stand.pose.position_m.to_array(),
                 "orientation": stand.pose.orientation.to_array(),

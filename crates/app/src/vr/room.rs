@@ -1,7 +1,7 @@
 //! One refresh after the other: eyes and hands in, pictures out, then work for the device.
 
 use super::check::{Checking, Checks, Seen};
-use super::eyes::{see_alike, upright_views};
+use super::eyes::{cast_views, see_alike, upright_views};
 use super::hands::Hands;
 use super::headset::{Headset, Moment, Sight};
 use super::ladder::Ladder;
@@ -13,8 +13,10 @@ use crate::failure::Failure;
 use crate::viewer::casting::Casting;
 use crate::viewer::command::Command;
 use crate::viewer::eyes::{Eyes, Wanted};
+use crate::viewer::lens::Lens;
 use crate::viewer::loading::Arrived;
 use crate::viewer::session::{Session, Showing};
+use crate::viewer::state::EyeMethod;
 use crate::viewer::timings::{Frame, Timings};
 use std::sync::Arc;
 use std::thread;
@@ -115,6 +117,8 @@ pub(crate) struct Room {
     commands: Vec<Command>,
     casting: Casting,
     eyes: Eyes,
+    /// Before the eyes' images.
+    lenses: [Lens; 2],
     stage: Stage,
     panel: Panel,
     hands: Option<Hands>,
@@ -148,6 +152,7 @@ impl Room {
             commands,
             casting: Casting::new(&gpu)?,
             eyes: Eyes::new(&gpu)?,
+            lenses: Default::default(),
             stage: Stage::new(gpu.device(), headset.image_format()),
             panel: Panel::new(&gpu, headset.image_format()),
             hands: None,
@@ -192,6 +197,8 @@ impl Room {
     /// Waits for the next refresh, draws it, and hands over as much casting as fits before the one after it.
     fn refresh(&mut self, headset: &mut dyn Headset) -> Result<Moment, Failure> {
         let sizes = headset.eye_sizes();
+        self.eyes.hide(headset.hidden_areas());
+        self.lenses.iter_mut().zip(headset.hidden_areas()).for_each(|(lens, hidden)| lens.hide(hidden));
         let mut grabbed = [false; 2];
         let mut begun = None;
         let moment = headset.refresh(&mut |sight| {
@@ -228,10 +235,12 @@ impl Room {
         };
         let stand = self.hands.as_ref().map(|hands| *hands.stand());
         let wanted = stand.map(|stand| upright_views(&eyes, &stand, sizes));
-        if let Some(views) = &wanted {
-            self.aim(views)?;
+        if let Some(stand) = &stand {
+            self.aim(&eyes, stand, sizes)?;
         }
         let warp = self.ladder.choose(self.session.state().pace.warp, tick.period_s);
+        let layering = self.session.state().pace.layers.layering().map_err(Failure::input)?;
+        self.eyes.step_by(layering.settings);
         self.pictures = match (self.casting.front(), &wanted) {
             (Some(front), Some(views)) => {
                 let wanted = Wanted { picture: self.casting.pictures(), views: views.to_vec(), warp };
@@ -263,7 +272,8 @@ impl Room {
     fn receive(&mut self, tick: &Tick, sizes: [[u32; 2]; 2]) -> Result<(), Failure> {
         // Until the head is tracked nobody knows where to put it.
         let Some(eyes) = tick.eyes else { return Ok(()) };
-        let Some((mut arrived, showing)) = self.arrived.take().or_else(|| self.session.step(&self.gpu)) else {
+        let Some((mut arrived, showing)) = self.arrived.take().or_else(|| self.session.step(&self.gpu))
+        else {
             return Ok(());
         };
         let (grid, up) = (arrived.facts.grid.clone(), showing.state.look.up.direction());
@@ -273,7 +283,7 @@ impl Room {
             (None, Some(stand)) => stand,
             (None, None) => Stand::before(&between, &grid, up, self.scale),
         };
-        let views = upright_views(&eyes, &stand, largest(sizes)).to_vec();
+        let views = self.cast_views(showing.state.stereo.method, &eyes, &stand, sizes);
         let held = arrived.held.take();
         match self.casting.receive(&self.gpu, *arrived, &showing.state, views.clone()) {
             Ok(()) => {
@@ -315,9 +325,8 @@ impl Room {
     }
 
     /// Has the next picture cast from where the eyes are, unless that would be the same.
-    fn aim(&mut self, views: &[View; 2]) -> Result<(), Failure> {
-        let sizes = largest([views[0].size, views[1].size]);
-        let views: Vec<View> = views.iter().zip(sizes).map(|(view, size)| View { size, ..*view }).collect();
+    fn aim(&mut self, eyes: &[Eye; 2], stand: &Stand, sizes: [[u32; 2]; 2]) -> Result<(), Failure> {
+        let views = self.cast_views(self.session.state().stereo.method, eyes, stand, sizes);
         let is_same = self
             .casting
             .placement()
@@ -326,6 +335,29 @@ impl Room {
             self.aimed = views;
         }
         self.casting.follow(&self.gpu, self.session.state(), self.aimed.clone())
+    }
+
+    /// What is to be cast for the eyes; that it is not by the method that is asked for is told once.
+    fn cast_views(
+        &mut self,
+        method: EyeMethod,
+        eyes: &[Eye; 2],
+        stand: &Stand,
+        sizes: [[u32; 2]; 2],
+    ) -> Vec<View> {
+        let (used, views) = cast_views(method, eyes, stand, sizes);
+        if used != method && !self.report.is_canted {
+            self.report.is_canted = true;
+            self.tell("the displays are canted: each eye's picture is cast");
+        }
+        self.report.eye_method = used;
+        views
+    }
+
+    /// Tells people something, in the panel and beside the headset.
+    fn tell(&mut self, what: &str) {
+        eprintln!("{what}");
+        self.told.push(what.to_owned());
     }
 
     fn draw_eyes(
@@ -340,9 +372,14 @@ impl Room {
         let behind = if self.has_floor { surroundings(tick) } else { Vec::new() };
         let in_front = self.hands.as_ref().map_or_else(Vec::new, |hands| hands.lines(tick));
         let background = self.session.state().look.background;
+        let [left, right] = &mut self.lenses;
+        let visible = [(left, 0), (right, 1)].map(|(lens, eye): (&mut Lens, usize)| {
+            let size = images[eye].texture().size();
+            lens.visible(&eyes[eye].frustum, [size.width, size.height])
+        });
         for (eye, image) in images.iter().enumerate() {
             let picture = self.pictures.as_ref().map(|pictures| &pictures[eye]);
-            let scenery = Scenery { behind: &behind, picture, in_front: &in_front };
+            let scenery = Scenery { behind: &behind, picture, visible: visible[eye], in_front: &in_front };
             self.stage.draw(&self.gpu, &mut encoder, image, &eyes[eye], background, &scenery);
         }
         if let (Some(checks), Some(pictures), Some(wanted), Some(front)) =
@@ -354,6 +391,7 @@ impl Room {
                 wanted: wanted[eye],
                 cast_from: cast_from[eye.min(cast_from.len() - 1)],
                 picture: &pictures[eye],
+                visible: visible[eye],
             });
             checks.keep(&self.gpu, &mut encoder, self.session.state(), seen)?;
         }
@@ -392,12 +430,6 @@ impl Room {
         }
         Ok(report)
     }
-}
-
-/// One size for both eyes' casts.
-fn largest(sizes: [[u32; 2]; 2]) -> [[u32; 2]; 2] {
-    let [left, right] = sizes;
-    [[left[0].max(right[0]), left[1].max(right[1])]; 2]
 }
 
 /// Floor and horizon about the head.

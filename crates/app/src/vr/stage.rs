@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, DVec4};
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::headset::Eye;
-use wheatstone_core::view::Frustum;
+use wheatstone_core::view::{Frustum, PixelRect};
 use wheatstone_render::Gpu;
 
 /// Width of lines, as a part of the picture's.
@@ -43,6 +43,8 @@ pub(crate) struct Scenery<'a> {
     pub(crate) behind: &'a [ColoredLine],
     /// Of the volume, premultiplied; none as long as there is none.
     pub(crate) picture: Option<&'a wgpu::TextureView>,
+    /// The pixels in which it is drawn, each of them in one rectangle.
+    pub(crate) visible: &'a [PixelRect],
     pub(crate) in_front: &'a [ColoredLine],
 }
 
@@ -208,7 +210,11 @@ impl Stage {
         draw_lines(&mut pass, &lines[0], scenery.behind);
         if scenery.picture.is_some() {
             pass.set_pipeline(&self.picture);
-            pass.draw(0..3, 0..1);
+            for PixelRect { columns, rows } in scenery.visible {
+                pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
+                pass.draw(0..3, 0..1);
+            }
+            pass.set_scissor_rect(0, 0, size.width, size.height);
         }
         draw_lines(&mut pass, &lines[1], scenery.in_front);
     }
@@ -230,8 +236,10 @@ fn clip_from_room(eye: &Eye) -> DMat4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::canvas;
     use glam::DQuat;
     use wheatstone_core::head::Pose;
+    use wheatstone_core::headset::HiddenArea;
 
     #[test]
     fn the_pipelines_build_on_the_noop_device() {
@@ -252,5 +260,85 @@ mod tests {
         let at = eye.view([200, 100]).pixel_position(point).unwrap();
         let pixel = [100.0 * (1.0 + clip.x / clip.w), 50.0 * (1.0 - clip.y / clip.w)];
         assert!((pixel[0] - at.x).abs() < 1e-9 && (pixel[1] - at.y).abs() < 1e-9, "{pixel:?} {at}");
+    }
+
+    const EYE: Eye = Eye {
+        pose: Pose { position_m: DVec3::ZERO, orientation: DQuat::IDENTITY },
+        frustum: Frustum { left: -1.0, right: 1.0, down: -1.0, up: 1.0, near_m: 0.001, far_m: f64::INFINITY },
+    };
+
+    /// Runs a test on a device, unless that is to be skipped.
+    fn on_device(test: impl FnOnce(&Gpu)) {
+        if std::env::var("WHEATSTONE_SKIP_GPU_TESTS").is_ok_and(|value| value == "1") {
+            return;
+        }
+        let gpu = Gpu::open_software().or_else(|_| Gpu::open_best());
+        test(&gpu.unwrap_or_else(|error| panic!("{error}; WHEATSTONE_SKIP_GPU_TESTS=1 skips this")));
+    }
+
+    /// What an eye sees of some scenery before a blue background.
+    fn seen(gpu: &Gpu, size: [u32; 2], scenery: &Scenery<'_>) -> Vec<[u8; 4]> {
+        let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm);
+        let image = canvas::texture(gpu, size, wgpu::TextureFormat::Rgba8Unorm).unwrap();
+        let view = image.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        stage.draw(gpu, &mut encoder, &view, &EYE, [0.0, 0.0, 1.0], scenery);
+        gpu.queue().submit([encoder.finish()]);
+        gpu.read_texture(&image).unwrap()
+    }
+
+    /// A picture that is opaque and red all over.
+    fn red(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::TextureView {
+        let description = wgpu::TextureDescriptor {
+            label: Some("red"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let texels = [255, 0, 0, 255].repeat((width * height) as usize);
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        let texture = gpu.device().create_texture_with_data(gpu.queue(), &description, order, &texels);
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    #[test]
+    fn what_lenses_hide_is_not_drawn() {
+        on_device(|gpu| {
+            let size = [64, 48];
+            let picture = red(gpu, size);
+            // All that is above the diagonal from the lower left to the upper right.
+            let hidden = HiddenArea {
+                corners: vec![[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]],
+                triangles: vec![[0, 1, 2]],
+            };
+            let visible = hidden.visible(&EYE.frustum, size);
+            let line = [ColoredLine::new(
+                [DVec3::new(-0.9, 0.8, -1.0), DVec3::new(-0.5, 0.8, -1.0)],
+                [1.0; 2],
+                [0.0, 1.0, 0.0],
+            )];
+            let scenery =
+                Scenery { picture: Some(&picture), visible: &visible, in_front: &line, ..Scenery::default() };
+            let texels = seen(gpu, size, &scenery);
+            let mut drawn = 0;
+            for (index, texel) in texels.iter().enumerate() {
+                let [x, y] = [index as u32 % size[0], index as u32 / size[0]];
+                let is_drawn = visible.iter().any(|rect| rect.columns.contains(&x) && rect.rows.contains(&y));
+                if [255, 0, 0, 255] == *texel {
+                    assert!(is_drawn, "{x} {y}");
+                    drawn += 1;
+                }
+                // Below the diagonal by a pixel.
+                if 48 * (x + 1) > 64 * (48 - y) {
+                    assert!([255, 0, 0, 255] == *texel, "{x} {y} {texel:?}");
+                }
+            }
+            assert!(drawn < 64 * 48 * 3 / 4, "{drawn}");
+            assert!(texels.contains(&[0, 255, 0, 255]), "lines are drawn wherever they are");
+        });
     }
 }

@@ -1,16 +1,18 @@
 //! Without a headset: a demonstration, and recordings.
 
 use crate::support::{distance, folder, recorded, stand_of, wheatstone};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde_json::Value;
-use wheatstone_core::headset::Demonstration;
+use wheatstone_core::head::Display;
+use wheatstone_core::headset::{Demonstration, Recording};
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::transfer::Preset;
 use wheatstone_core::view::AnatomicalDirection;
 use wheatstone_core::volume::Grid;
 
 /// All keys of a row of `bench vr --json`.
-const KEYS: [&str; 22] = [
+const KEYS: [&str; 24] = [
+    "canted",
     "checked",
     "draw_ms_median",
     "draw_ms_p99",
@@ -21,6 +23,7 @@ const KEYS: [&str; 22] = [
     "dssim_still_mean",
     "dssim_still_worst",
     "ended",
+    "eye_method",
     "failures",
     "headset",
     "period_ms",
@@ -147,6 +150,48 @@ fn a_report_has_what_is_documented() {
 }
 
 #[test]
+fn one_cast_shows_both_eyes_what_two_casts_do() {
+    let folder = folder();
+    let bench = ["bench", "vr", "sphere.nrrd", "--size", "96x96", "--patient", "--json", "--refreshes", "60"];
+    let one = wheatstone(folder.path(), &[&bench[..], &["--eye-method", "one-cast"]].concat()).json();
+    let two = wheatstone(folder.path(), &[&bench[..], &["--eye-method", "two-casts"]].concat()).json();
+    for (report, method) in [(&one, "one_cast"), (&two, "two_casts")] {
+        let row = &report["rows"][0];
+        assert_eq!((row["eye_method"].as_str(), row["canted"].as_bool()), (Some(method), Some(false)));
+        let checked = row["checked"].as_array().unwrap();
+        assert_eq!(checked.len(), 6);
+        let worst = checked.iter().map(|check| check["dssim"].as_f64().unwrap()).fold(0.0, f64::max);
+        assert!(worst < 0.02, "{method}: {checked:?}");
+    }
+}
+
+#[test]
+fn canted_displays_get_two_casts_and_that_is_told_once() {
+    let folder = folder();
+    let sphere = Phantom::Sphere.cube(24).unwrap();
+    let demonstration = Demonstration::new(sphere.grid(), AnatomicalDirection::Superior);
+    let mut ticks = demonstration.recording(Display::new(25.0).unwrap()).unwrap().ticks().to_vec();
+    for tick in &mut ticks {
+        let [left, right] = tick.eyes.as_mut().unwrap();
+        left.pose.orientation *= DQuat::from_rotation_y(0.1);
+        right.pose.orientation *= DQuat::from_rotation_y(-0.1);
+    }
+    let file = std::fs::File::create(folder.path().join("canted.jsonl")).unwrap();
+    Recording::new(ticks).unwrap().write(file).unwrap();
+
+    let vr = ["vr", "sphere.nrrd", "--headset", "none", "--patient", "--json", "--replay", "canted.jsonl"];
+    let ends = ["--refreshes", "30"];
+    let told = "the displays are canted";
+    let run = wheatstone(folder.path(), &[&vr[..], &ends, &["--eye-method", "one-cast"]].concat());
+    assert_eq!(run.stderr.matches(told).count(), 1, "{}", run.stderr);
+    let report = run.json();
+    assert_eq!((report["eye_method"].as_str(), report["canted"].as_bool()), (Some("two_casts"), Some(true)));
+    // Two casts that are asked for are nothing to tell of.
+    let run = wheatstone(folder.path(), &[&vr[..], &ends].concat());
+    assert!(!run.stderr.contains(told), "{}", run.stderr);
+}
+
+#[test]
 fn what_is_recorded_is_played_back_to_the_same_end() {
     let folder = folder();
     let vr = ["vr", "sphere.nrrd", "--headset", "none", "--patient", "--json"];
@@ -171,7 +216,7 @@ fn a_bad_recording_is_refused_with_its_line() {
     let folder = folder();
     let demonstration =
         Demonstration::new(Phantom::Sphere.cube(24).unwrap().grid(), AnatomicalDirection::Superior);
-    let recording = demonstration.recording(wheatstone_core::head::Display::new(20.0).unwrap()).unwrap();
+    let recording = demonstration.recording(Display::new(20.0).unwrap()).unwrap();
     let mut text = Vec::new();
     recording.write(&mut text).unwrap();
     let text = String::from_utf8(text).unwrap();

@@ -41,6 +41,12 @@ impl PixelRect {
         [wide(above), wide(below), narrow(left), narrow(right)]
     }
 
+    /// Its pixels that are in another as well.
+    pub fn within(&self, other: &Self) -> Self {
+        let both = |a: &Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
+        Self { columns: both(&self.columns, &other.columns), rows: both(&self.rows, &other.rows) }
+    }
+
     /// The pixels, of a picture of a size, about the convex hull of positions, in pixels from the top left; all of them if one
     /// is nowhere.
     pub(crate) fn of_positions(positions: impl Iterator<Item = Option<DVec2>>, size: [u32; 2]) -> Self {
@@ -164,6 +170,7 @@ mod tests {
                 let has = |of: &PixelRect| of.columns.contains(&x) && of.rows.contains(&y);
                 let times = left.iter().filter(|part| has(part)).count();
                 prop_assert_eq!(times, usize::from(has(&rect) && !has(&other)), "{} {}", x, y);
+                prop_assert_eq!(has(&rect.within(&other)), has(&rect) && has(&other), "{} {}", x, y);
             }
         }
     }

@@ -10,12 +10,19 @@ pub struct Canvas {
     view: wgpu::TextureView,
     /// Pixels outside of which it is transparent; unknown before the first warp.
     drawn: Option<PixelRect>,
+    /// That can be seen; all, if it is unknown.
+    visible: Option<Vec<PixelRect>>,
 }
 
 impl Canvas {
     /// A texture with anything in it.
     pub fn new(view: wgpu::TextureView) -> Self {
-        Self { view, drawn: None }
+        Self { view, drawn: None, visible: None }
+    }
+
+    /// From now on nothing but some pixels, each of them in one rectangle, can be seen: what the others show is not defined.
+    pub fn show_only(&mut self, visible: &[PixelRect]) {
+        self.visible = Some(visible.to_vec());
     }
 
     /// What passes sample.
@@ -32,5 +39,13 @@ impl Canvas {
     /// Notes that some pixels are drawn. Returns which have to be emptied before; all, if it is unknown.
     pub(super) fn draw(&mut self, covered: &PixelRect) -> Option<PixelRect> {
         self.drawn.replace(covered.clone())
+    }
+
+    /// Those of some pixels that can be seen.
+    pub(super) fn seen(&self, pixels: &PixelRect) -> Vec<PixelRect> {
+        match &self.visible {
+            Some(visible) => visible.iter().map(|rect| rect.within(pixels)).collect(),
+            None => vec![pixels.clone()],
+        }
     }
 }

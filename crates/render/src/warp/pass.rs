@@ -83,7 +83,7 @@ pub(super) fn build(
     }))
 }
 
-/// Encodes a pass of a warp over some pixels; the others are transparent after it.
+/// Encodes a pass of a warp over some pixels, as far as they can be seen; the others are transparent after it.
 ///
 /// # Errors
 /// A canvas that is not of the wanted view's size.
@@ -123,6 +123,8 @@ pub(super) fn draw(
     for left in before.iter().flat_map(|before| before.without(covered)) {
         fill(blank, &left);
     }
-    fill(warp, covered);
+    for seen in into.seen(covered) {
+        fill(warp, &seen);
+    }
     Ok(())
 }

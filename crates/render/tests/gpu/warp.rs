@@ -7,7 +7,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::Image;
 use wheatstone_core::metrics::compare;
 use wheatstone_core::scene::Settings;
-use wheatstone_core::view::{Frustum, Projection, View};
+use wheatstone_core::view::{Frustum, PixelRect, Projection, View};
 use wheatstone_core::volume::VoxelType;
 use wheatstone_core::warp::{self, GridSettings, Reach, WarpError};
 use wheatstone_render::warp::{Canvas, Picture, Shown, Warps};
@@ -215,5 +215,39 @@ fn what_does_not_go_together_is_refused() {
             warps(gpu).quad(gpu, encoder, &scene.shown(), &front(), into)
         });
         assert!(matches!(into_another, Err(WarpError::Mismatch { .. })));
+    });
+}
+
+#[test]
+fn what_cannot_be_seen_is_not_drawn_and_the_rest_is_as_ever() {
+    on_device(|gpu, renderer| {
+        let scene = Scene::cast(gpu, renderer, front());
+        let wanted = wanted(&mut fastrand::Rng::with_seed(5), &scene.view);
+        let [width, height] = wanted.size;
+        let middle = width / 2..width / 2 + 9;
+        let visible = [
+            PixelRect { columns: 0..width / 2, rows: 0..height / 2 },
+            PixelRect { columns: middle, rows: height / 2..height },
+        ];
+        let (warps, settings) = (warps(gpu), GridSettings::default());
+        let warp = |visible: Option<&[PixelRect]>| {
+            warped(gpu, &wanted, |encoder, into| {
+                if let Some(visible) = visible {
+                    into.show_only(visible);
+                }
+                warps.grid(gpu, encoder, &scene.shown(), &wanted, settings, into)
+            })
+            .unwrap()
+        };
+        let (all, seen) = (warp(None), warp(Some(&visible)));
+        let mut drawn = [0; 2];
+        for (index, (pixel, expected)) in seen.color.iter().zip(&all.color).enumerate() {
+            let [x, y] = [index as u32 % width, index as u32 / width];
+            let is_visible = visible.iter().any(|rect| rect.columns.contains(&x) && rect.rows.contains(&y));
+            assert_eq!(*pixel, if is_visible { *expected } else { [0.0; 4] }, "{x} {y}");
+            drawn[usize::from(is_visible)] += usize::from(*expected != [0.0; 4]);
+        }
+        assert!(drawn.iter().all(|&count| count > 100), "{drawn:?}");
+        assert_eq!(warp(Some(&[])).color, vec![[0.0; 4]; all.color.len()]);
     });
 }

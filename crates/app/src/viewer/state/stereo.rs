@@ -1,6 +1,7 @@
 //! One eye or two.
 
 use super::within;
+use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use wheatstone_core::view::{Rig, View};
 
@@ -27,10 +28,11 @@ pub(crate) enum Arrangement {
 }
 
 /// Where the eyes' pictures come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum EyeMethod {
     /// Each is cast.
+    #[default]
     TwoCasts,
     /// One is cast in the middle and warped to both.
     OneCast,
