@@ -10,7 +10,6 @@ fn has_eyes(tick: &Tick) -> bool {
 }
 
 #[test]
-#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn a_second_program_takes_the_hands_and_the_session_goes_on() {
     let Some(place) = Place::start(Compositor::Null) else { return };
     let held = Controller { squeeze: 1.0, ..Controller::at(pose([0.1, 1.0, -0.5], [0.0; 3])) };
@@ -42,7 +41,6 @@ fn a_second_program_takes_the_hands_and_the_session_goes_on() {
 }
 
 #[test]
-#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn a_runtime_that_is_killed_is_told_and_the_exit_code_says_so() {
     let Some(place) = Place::start(Compositor::Null) else { return };
     let mut vr = place.begin_vr("killed", &["sphere.nrrd"]);
@@ -54,7 +52,6 @@ fn a_runtime_that_is_killed_is_told_and_the_exit_code_says_so() {
 }
 
 #[test]
-#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn no_runtime_is_told_and_the_exit_code_says_so() {
     let Some(place) = Place::start(Compositor::None) else { return };
     let run = place.run(&["vr", "sphere.nrrd", "--no-mirror"]);
@@ -63,7 +60,6 @@ fn no_runtime_is_told_and_the_exit_code_says_so() {
 }
 
 #[test]
-#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn a_bad_volume_begins_no_session() {
     let Some(place) = Place::start(Compositor::Null) else { return };
     std::fs::write(place.folder().join("bad.nrrd"), "no volume").unwrap();

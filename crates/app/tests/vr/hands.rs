@@ -137,7 +137,6 @@ fn largest_difference([a, b]: [[f64; 6]; 2]) -> f64 {
 }
 
 #[test]
-#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn hands_carry_scale_crop_and_choose_as_computed() {
     let Some(place) = Place::start(Compositor::Null) else { return };
     let sphere = Phantom::Sphere.cube(24).unwrap();

@@ -12,10 +12,8 @@ mod monado;
 #[allow(dead_code, reason = "the tests of the headset itself use the rest")]
 #[path = "../../../xr/tests/headset/remote.rs"]
 mod remote;
-#[allow(dead_code, reason = "the tests of the headset itself use the rest")]
 #[path = "../../../xr/tests/headset/screenshot.rs"]
 mod screenshot;
-#[allow(dead_code, reason = "the tests that are not run yet use the rest")]
 mod support;
 
 mod endings;
@@ -23,5 +21,4 @@ mod hands;
 mod marks;
 mod moving;
 mod no_headset;
-// mod screen;
 mod validation;

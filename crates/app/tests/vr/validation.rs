@@ -4,7 +4,6 @@ use crate::monado::Compositor;
 use crate::support::Place;
 
 #[test]
-#[ignore = "not run to its end yet: cargo test -p wheatstone --test vr -- --ignored"]
 fn vulkans_validation_layer_has_nothing_to_say() {
     let Some(place) = Place::start(Compositor::Null) else { return };
     let layers = [("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation"), ("VK_LOADER_DEBUG", "layer")];
