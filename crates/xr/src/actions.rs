@@ -118,6 +118,7 @@ impl Actions {
             trigger: within(trigger?, 0.0),
             stick: [within(stick.x, -1.0), within(stick.y, -1.0)],
             menu: state(&self.menu, session, of.path)?.unwrap_or(false),
+            pinch: None,
         }))
     }
 

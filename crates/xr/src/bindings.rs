@@ -63,7 +63,7 @@ const MENU: (Input, &str) = (Input::Menu, "input/menu/click");
 
 /// Every controller that is known. Runtimes map others to these.
 ///
-/// The simple controller has one button beside the menu's. It squeezes, as the pinch of a bare hand does: taking hold of the volume is
+/// The simple controller has one button beside the menu's. It squeezes: taking hold of the volume is
 /// what no hand can do without. Controllers whose menu button is the runtime's own have it on the upper face button.
 pub(crate) const PROFILES: [Profile; 5] = [
     Profile {

@@ -1,11 +1,11 @@
-//! Bare hands: a pinch of thumb and index finger squeezes.
+//! Bare hands, which pinch.
 
 use crate::error::{Called, XrError};
 use crate::space::{World, known};
 use glam::{DMat3, DQuat};
 use openxr as xr;
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::{Hand, Side};
+use wheatstone_core::headset::{Hand, Pinch, Side};
 
 /// Space between the skins of thumb and index finger at which a pinch begins, metres.
 const OPEN_M: f64 = 0.03;
@@ -47,7 +47,7 @@ impl Joint {
 }
 
 /// A hand that holds nothing: its fist is about the palm, it points from the knuckle of the index finger along the palm, so that bending
-/// that finger does not turn the ray, and it squeezes by pinching.
+/// that finger does not turn the ray, and it pinches as long as both tips are known.
 fn bare_hand(side: Side, joint: impl Fn(xr::HandJoint) -> Option<Joint>) -> Option<Hand> {
     let palm = joint(xr::HandJoint::PALM)?.pose;
     let knuckle = joint(xr::HandJoint::INDEX_PROXIMAL)?.pose;
@@ -55,15 +55,18 @@ fn bare_hand(side: Side, joint: impl Fn(xr::HandJoint) -> Option<Joint>) -> Opti
     Some(Hand {
         grip: Some(Pose { orientation: palm.orientation * palm_from_grip(side), ..palm }),
         aim: Some(Pose { position_m: knuckle.position_m, ..palm }),
-        squeeze: thumb.zip(index).map_or(0.0, |(thumb, index)| pinch(thumb, index)),
+        pinch: thumb.zip(index).map(|(thumb, index)| pinch(thumb, index)),
         ..Hand::default()
     })
 }
 
-/// How far two finger tips are pinched: 0 from [`OPEN_M`] on, 1 when their skins touch.
-fn pinch(thumb: Joint, index: Joint) -> f32 {
+/// Two finger tips, closed by 0 from [`OPEN_M`] on, by 1 when their skins touch.
+fn pinch(thumb: Joint, index: Joint) -> Pinch {
     let gap_m = thumb.pose.distance_to_m(&index.pose) - thumb.radius_m - index.radius_m;
-    (1.0 - gap_m / OPEN_M).clamp(0.0, 1.0) as f32
+    Pinch {
+        position_m: thumb.pose.position_m.midpoint(index.pose.position_m),
+        closed: (1.0 - gap_m / OPEN_M).clamp(0.0, 1.0) as f32,
+    }
 }
 
 /// Turns the axes of a fist into those of the palm. Of a palm, −Z points along the fingers and +Y out of the back of the hand; of a fist,
@@ -90,8 +93,9 @@ mod tests {
     #[test]
     fn a_pinch_closes_with_the_gap_between_the_skins() {
         for (distance_m, expected) in [(0.1, 0.0), (0.046, 0.0), (0.031, 0.5), (0.016, 1.0), (0.0, 1.0)] {
-            let squeeze = pinch(at(0.0, 0.0, 0.0), at(distance_m, 0.0, 0.0));
-            assert!((squeeze - expected).abs() < 1e-6, "{distance_m} m: {squeeze}");
+            let Pinch { position_m, closed } = pinch(at(0.0, 0.0, 0.0), at(distance_m, 0.0, 0.0));
+            assert!((closed - expected).abs() < 1e-6, "{distance_m} m: {closed}");
+            assert_eq!(position_m, DVec3::new(0.5 * distance_m, 0.0, 0.0));
         }
     }
 
@@ -118,7 +122,7 @@ mod tests {
         let aim = hand.aim.unwrap();
         assert_eq!(aim.position_m, DVec3::new(-0.03, 0.0, -0.04));
         assert_eq!(aim.orientation * DVec3::NEG_Z, DVec3::NEG_Z);
-        assert!(hand.squeeze > 0.99 && hand.trigger == 0.0);
+        assert!(hand.pinch.is_some_and(|pinch| pinch.closed > 0.99) && hand.squeeze == 0.0);
     }
 
     #[test]
@@ -129,6 +133,6 @@ mod tests {
         );
         let without_tip =
             bare_hand(Side::Left, |joint| (joint != xr::HandJoint::THUMB_TIP).then(|| at(0.0, 0.0, 0.0)));
-        assert_eq!(without_tip.map(|hand| hand.squeeze), Some(0.0));
+        assert_eq!(without_tip.map(|hand| hand.pinch), Some(None));
     }
 }

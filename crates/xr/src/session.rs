@@ -235,6 +235,12 @@ impl Session {
         self.format
     }
 
+    /// The format of the depths that are given along with the eyes' pictures, if they are.
+    pub fn depth_format(&self) -> Option<wgpu::TextureFormat> {
+        let [left, _] = &self.eye_images;
+        left.depth.as_ref().map(Swapchain::format)
+    }
+
     /// Width and height of the left and the right eye's pictures, pixels.
     pub fn eye_sizes(&self) -> [[u32; 2]; 2] {
         self.runtime.description().eye_sizes

@@ -136,6 +136,11 @@ impl Swapchain {
         Ok(Self { handle, images, content, size, reading, held: Held::Nothing, has_picture: false })
     }
 
+    /// The format of the views that are drawn to.
+    pub(crate) fn format(&self) -> wgpu::TextureFormat {
+        self.content.view
+    }
+
     /// Waits for the next image that may be drawn to. It is the same until it is released.
     pub(crate) fn acquire(&mut self) -> Result<wgpu::TextureView, XrError> {
         let mut handle = lock(&self.handle);

@@ -1,6 +1,8 @@
 //! `bench vr`: how well refreshes of a headset are kept, and how far what they show is from what they should.
 
-use super::vr::{CheckArgs, EYE, HeadsetName, checked_transfer, clock, layers, open, played, read_recording};
+use super::vr::{
+    CheckArgs, EYE, HeadsetName, checked_transfer, clock, depth_layer, layers, open, played, read_recording,
+};
 use crate::failure::Failure;
 use crate::layering::LayeringArgs;
 use crate::output::{print, print_json};
@@ -79,6 +81,11 @@ pub(crate) struct VrBenchArgs {
     #[arg(long, value_enum)]
     eye_method: Option<EyeMethod>,
 
+    /// Give the runtime the depths of first hits along with pictures, by which it moves them to a pose that is newer still: it takes
+    /// them for surfaces, which harms translucent volumes.
+    #[arg(long)]
+    depth_layer: bool,
+
     #[command(flatten)]
     check: CheckArgs,
 
@@ -150,14 +157,22 @@ impl VrBenchArgs {
                 let loaded = open(source, &gpu)?;
                 let (played, stand) = played(recording, &loaded.1);
                 let display = Display::new(self.refresh_hz).map_err(Failure::input)?;
-                let mut headset = Replay::new(gpu, played, display, clock(self.patient), self.size)?;
+                let mut headset = Replay::new(
+                    gpu,
+                    played,
+                    display,
+                    clock(self.patient),
+                    self.size,
+                    depth_layer(self.depth_layer),
+                )?;
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
             HeadsetName::Openxr => {
                 let connected = Connected::connect()?;
                 let loaded = open(source, connected.gpu())?;
                 let (played, stand) = played(recording, &loaded.1);
-                let mut headset = Guided::new(OpenXr::begin(connected)?, played);
+                let mut headset =
+                    Guided::new(OpenXr::begin(connected, depth_layer(self.depth_layer))?, played);
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
         }

@@ -14,8 +14,8 @@ use crate::viewer::session::{Session, Showing};
 use crate::viewer::state::{Edit, EyeMethod, Layers, WarpName};
 use crate::volume_args::RawArgs;
 use crate::vr::{
-    Beside, Checking, Clock, Connected, Guided, Mirror, OpenXr, Opening, Played, Record, Replay, Room, load,
-    run as show,
+    Beside, Checking, Clock, Connected, DepthLayer, Guided, Mirror, OpenXr, Opening, Played, Record, Replay,
+    Room, load, run as show,
 };
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
@@ -98,6 +98,11 @@ pub(crate) struct VrArgs {
     #[arg(long, value_enum)]
     eye_method: Option<EyeMethod>,
 
+    /// Give the runtime the depths of first hits along with pictures, by which it moves them to a pose that is newer still: it takes
+    /// them for surfaces, which harms translucent volumes.
+    #[arg(long)]
+    depth_layer: bool,
+
     #[command(flatten)]
     check: CheckArgs,
 
@@ -170,7 +175,8 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
             let (played, stand) = played(recording, &loaded.1);
             let display = Display::default();
             let size = spec::picture_size(EYE).map_err(Failure::input)?;
-            let mut headset = Replay::new(gpu, played, display, clock(args.patient), size)?;
+            let mut headset =
+                Replay::new(gpu, played, display, clock(args.patient), size, depth_layer(args.depth_layer))?;
             company.interrupt.watch()?;
             show(&mut headset, opening(loaded, stand), &mut company)?
         }
@@ -180,7 +186,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
             if !args.no_mirror {
                 company.mirror = mirror(&connected);
             }
-            let headset = OpenXr::begin(connected)?;
+            let headset = OpenXr::begin(connected, depth_layer(args.depth_layer))?;
             company.interrupt.watch()?;
             match recording.map(Played::Recording) {
                 Some(played) => show(&mut Guided::new(headset, played), opening(loaded, None), &mut company)?,
@@ -197,6 +203,11 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         print(&report.to_lines())?;
     }
     Ok(())
+}
+
+/// Whether depths are given along with pictures.
+pub(super) fn depth_layer(is_asked_for: bool) -> DepthLayer {
+    if is_asked_for { DepthLayer::With } else { DepthLayer::Without }
 }
 
 /// What flags say of layers, whatever a saved view says.

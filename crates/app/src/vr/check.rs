@@ -1,5 +1,6 @@
 //! How far what was shown is from what the eyes should have seen.
 
+use super::headset::EyeImage;
 use super::stage::{Scenery, Stage};
 use crate::failure::Failure;
 use crate::output::{file_in, make_folder};
@@ -73,7 +74,7 @@ impl Checks {
     /// With a folder that can be written to, if there is to be one.
     pub(crate) fn new(gpu: &Gpu, checking: Checking) -> Result<Self, Failure> {
         checking.pictures.as_deref().map(make_folder).transpose()?;
-        let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm);
+        let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm, None);
         Ok(Self { stage, checking, refresh: 0, kept: Vec::new() })
     }
 
@@ -92,9 +93,10 @@ impl Checks {
         }
         for (side, Seen { eye, wanted, cast_from, picture, visible }) in Side::BOTH.into_iter().zip(seen) {
             let image = canvas::texture(gpu, wanted.size, wgpu::TextureFormat::Rgba8Unorm)?;
-            let view = image.create_view(&wgpu::TextureViewDescriptor::default());
+            let color = image.create_view(&wgpu::TextureViewDescriptor::default());
+            let target = EyeImage { color, depth: None };
             let scenery = Scenery { picture: Some(picture), visible, ..Scenery::default() };
-            self.stage.draw(gpu, encoder, &view, eye, [0.0; 3], &scenery);
+            self.stage.draw(gpu, encoder, &target, eye, [0.0; 3], &scenery);
             let eye_m = |view: &View| view.view_from_world.inverse().translation;
             let turned =
                 !wanted.view_from_world.matrix3.abs_diff_eq(cast_from.view_from_world.matrix3, STILL);

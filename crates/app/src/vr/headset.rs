@@ -16,6 +16,9 @@ pub(crate) trait Headset {
     /// The format of what is drawn to.
     fn image_format(&self) -> wgpu::TextureFormat;
 
+    /// The format of the depths that are kept beside the eyes' pictures, if they are.
+    fn depth_format(&self) -> Option<wgpu::TextureFormat>;
+
     /// Width and height of the eyes' pictures, pixels.
     fn eye_sizes(&self) -> [[u32; 2]; 2];
 
@@ -44,10 +47,26 @@ pub(crate) trait Sight {
     fn tick(&self) -> &Tick;
 
     /// What the eyes' pictures are drawn to; all of their pixels are.
-    fn eye_images(&mut self) -> Result<[wgpu::TextureView; 2], Failure>;
+    fn eye_images(&mut self) -> Result<[EyeImage; 2], Failure>;
 
     /// What the panel is drawn to when it is drawn anew; none if there is no panel.
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure>;
+}
+
+/// What an eye's picture is drawn to.
+#[derive(Debug, Clone)]
+pub(crate) struct EyeImage {
+    pub(crate) color: wgpu::TextureView,
+    /// Near over depth, of the eye's frustum, if depths are kept.
+    pub(crate) depth: Option<wgpu::TextureView>,
+}
+
+/// Whether depths are kept beside the eyes' pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DepthLayer {
+    Without,
+    /// If the runtime takes them.
+    With,
 }
 
 /// What a headset was up to.

@@ -5,6 +5,7 @@
 //! ([`Stand`](wheatstone_core::headset::Stand)), so that pictures go on to be cast, and old ones to be warped, while it is carried.
 
 mod check;
+mod depths;
 mod eyes;
 mod hands;
 mod headset;
@@ -21,6 +22,7 @@ mod room;
 mod stage;
 
 pub(crate) use check::Checking;
+pub(crate) use headset::DepthLayer;
 pub(crate) use mirror::Mirror;
 #[cfg(any(target_os = "linux", target_os = "windows"))]
 pub(crate) use openxr::{Connected, OpenXr};

@@ -1,6 +1,6 @@
 //! A headset that an OpenXR runtime tells of.
 
-use super::headset::{Headset, Moment, Sight};
+use super::headset::{DepthLayer, EyeImage, Headset, Moment, Sight};
 use super::panel;
 use crate::failure::Failure;
 use glam::{DQuat, DVec3};
@@ -47,12 +47,19 @@ impl Connected {
 
 impl OpenXr {
     /// Begins a session. From then on nothing else may give the device work from another thread.
-    pub(crate) fn begin(Connected(graphics): Connected) -> Result<Self, Failure> {
-        let options = SessionOptions { panel_px: Some(panel::SIZE), ..SessionOptions::default() };
+    pub(crate) fn begin(Connected(graphics): Connected, depth_layer: DepthLayer) -> Result<Self, Failure> {
+        let has_depth = depth_layer == DepthLayer::With;
+        let options = SessionOptions { panel_px: Some(panel::SIZE), has_depth, ..SessionOptions::default() };
         let session = Session::begin(&graphics, options)?;
         let runtime = graphics.runtime().description().name.clone();
+        let mut told = Vec::new();
+        if has_depth && session.depth_format().is_none() {
+            let no_depths = format!("{runtime} takes no depths (XR_KHR_composition_layer_depth)");
+            eprintln!("--depth-layer: {no_depths}");
+            told.push(no_depths);
+        }
         let hidden = [hidden_area(&session, 0)?, hidden_area(&session, 1)?];
-        Ok(Self { session, graphics, runtime, hidden, told: Vec::new() })
+        Ok(Self { session, graphics, runtime, hidden, told })
     }
 
     /// Takes note of what has happened.
@@ -88,6 +95,10 @@ impl Headset for OpenXr {
 
     fn image_format(&self) -> wgpu::TextureFormat {
         self.session.image_format()
+    }
+
+    fn depth_format(&self) -> Option<wgpu::TextureFormat> {
+        self.session.depth_format()
     }
 
     fn eye_sizes(&self) -> [[u32; 2]; 2] {
@@ -163,8 +174,8 @@ impl Sight for Drawn<'_, '_> {
         self.0.tick()
     }
 
-    fn eye_images(&mut self) -> Result<[wgpu::TextureView; 2], Failure> {
-        Ok(self.0.acquire_eyes()?.map(|image| image.color))
+    fn eye_images(&mut self) -> Result<[EyeImage; 2], Failure> {
+        Ok(self.0.acquire_eyes()?.map(|image| EyeImage { color: image.color, depth: image.depth }))
     }
 
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {

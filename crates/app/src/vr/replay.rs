@@ -1,6 +1,6 @@
 //! A headset that is not there: recorded eyes and hands, at the refreshes of a display that a clock simulates.
 
-use super::headset::{Headset, Moment, Sight};
+use super::headset::{DepthLayer, EyeImage, Headset, Moment, Sight};
 use crate::failure::Failure;
 use crate::viewer::canvas;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ pub(crate) struct Replay {
     gpu: Arc<Gpu>,
     played: Played,
     display: Display,
-    eyes: [wgpu::Texture; 2],
+    eyes: [EyeImage; 2],
     /// Of refresh 0; none before the first.
     begun: Option<Instant>,
     clock: Clock,
@@ -64,8 +64,17 @@ impl Replay {
         display: Display,
         clock: Clock,
         size: [u32; 2],
+        depth_layer: DepthLayer,
     ) -> Result<Self, Failure> {
-        let eye = || canvas::texture(&gpu, size, wgpu::TextureFormat::Rgba8Unorm);
+        let image = |format| {
+            let texture = canvas::texture(&gpu, size, format)?;
+            Ok::<_, Failure>(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+        };
+        let eye = || {
+            let depth = (depth_layer == DepthLayer::With).then(|| image(wgpu::TextureFormat::Depth32Float));
+            let color = image(wgpu::TextureFormat::Rgba8Unorm)?;
+            Ok::<_, Failure>(EyeImage { color, depth: depth.transpose()? })
+        };
         let eyes = [eye()?, eye()?];
         let hidden = Default::default();
         Ok(Self { played, display, eyes, begun: None, clock, next: 0, is_closed: false, hidden, gpu })
@@ -82,11 +91,18 @@ impl Headset for Replay {
     }
 
     fn image_format(&self) -> wgpu::TextureFormat {
-        self.eyes[0].format()
+        self.eyes[0].color.texture().format()
+    }
+
+    fn depth_format(&self) -> Option<wgpu::TextureFormat> {
+        self.eyes[0].depth.as_ref().map(|depth| depth.texture().format())
     }
 
     fn eye_sizes(&self) -> [[u32; 2]; 2] {
-        self.eyes.each_ref().map(|eye| [eye.width(), eye.height()])
+        self.eyes.each_ref().map(|eye| {
+            let image = eye.color.texture();
+            [image.width(), image.height()]
+        })
     }
 
     fn hidden_areas(&self) -> &[HiddenArea; 2] {
@@ -161,6 +177,10 @@ impl<H: Headset> Headset for Guided<H> {
         self.headset.image_format()
     }
 
+    fn depth_format(&self) -> Option<wgpu::TextureFormat> {
+        self.headset.depth_format()
+    }
+
     fn eye_sizes(&self) -> [[u32; 2]; 2] {
         self.headset.eye_sizes()
     }
@@ -221,7 +241,7 @@ impl Sight for Guide<'_> {
         &self.tick
     }
 
-    fn eye_images(&mut self) -> Result<[wgpu::TextureView; 2], Failure> {
+    fn eye_images(&mut self) -> Result<[EyeImage; 2], Failure> {
         self.sight.eye_images()
     }
 
@@ -232,7 +252,7 @@ impl Sight for Guide<'_> {
 
 struct Drawn<'a> {
     tick: Tick,
-    eyes: &'a [wgpu::Texture; 2],
+    eyes: &'a [EyeImage; 2],
 }
 
 impl Sight for Drawn<'_> {
@@ -240,8 +260,8 @@ impl Sight for Drawn<'_> {
         &self.tick
     }
 
-    fn eye_images(&mut self) -> Result<[wgpu::TextureView; 2], Failure> {
-        Ok(self.eyes.each_ref().map(|eye| eye.create_view(&wgpu::TextureViewDescriptor::default())))
+    fn eye_images(&mut self) -> Result<[EyeImage; 2], Failure> {
+        Ok(self.eyes.clone())
     }
 
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {

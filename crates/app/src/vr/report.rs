@@ -12,6 +12,8 @@ use wheatstone_core::headset::{Late, Stand};
 pub(crate) struct Report {
     pub(crate) device: String,
     pub(crate) headset: String,
+    /// Whether depths were given along with pictures.
+    pub(crate) has_depth_layer: bool,
     pub(crate) volume: String,
     pub(crate) period_s: f64,
     pub(crate) late: Late,
@@ -57,6 +59,7 @@ impl Report {
         let [moving, still] = [true, false].map(|moves| self.dssim(moves));
         json!({
             "headset": self.headset,
+            "depth_layer": self.has_depth_layer,
             "volume": self.volume,
             "period_ms": 1e3 * self.period_s,
             "refreshes": self.draws.len(),

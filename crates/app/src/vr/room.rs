@@ -1,9 +1,10 @@
 //! One refresh after the other: eyes and hands in, pictures out, then work for the device.
 
 use super::check::{Checking, Checks, Seen};
+use super::depths::Depths;
 use super::eyes::{cast_views, see_alike, upright_views};
 use super::hands::Hands;
-use super::headset::{Headset, Moment, Sight};
+use super::headset::{EyeImage, Headset, Moment, Sight};
 use super::ladder::Ladder;
 use super::panel::{Panel, Told};
 use super::pointing::Pointing;
@@ -120,6 +121,8 @@ pub(crate) struct Room {
     /// Before the eyes' images.
     lenses: [Lens; 2],
     stage: Stage,
+    /// Where depths are kept.
+    depths: Option<Depths>,
     panel: Panel,
     hands: Option<Hands>,
     pointing: Option<Pointing>,
@@ -144,6 +147,7 @@ impl Room {
         let report = Report {
             device: format!("{} ({})", gpu.description().name, gpu.description().backend),
             headset: headset.name(),
+            has_depth_layer: headset.depth_format().is_some(),
             ..Report::default()
         };
         Ok(Self {
@@ -153,7 +157,8 @@ impl Room {
             casting: Casting::new(&gpu)?,
             eyes: Eyes::new(&gpu)?,
             lenses: Default::default(),
-            stage: Stage::new(gpu.device(), headset.image_format()),
+            stage: Stage::new(gpu.device(), headset.image_format(), headset.depth_format()),
+            depths: headset.depth_format().map(|_| Depths::new(&gpu)).transpose()?,
             panel: Panel::new(&gpu, headset.image_format()),
             hands: None,
             pointing: None,
@@ -248,8 +253,12 @@ impl Room {
             }
             _ => None,
         };
+        let depths = match (&mut self.depths, self.casting.front(), &wanted) {
+            (Some(depths), Some(front), Some(views)) => depths.show(&self.gpu, front, views)?,
+            _ => None,
+        };
         let images = sight.eye_images()?;
-        let submission = self.draw_eyes(&images, &eyes, &tick, wanted.as_ref())?;
+        let submission = self.draw_eyes(&images, depths.as_ref(), &eyes, &tick, wanted.as_ref())?;
         if self.panel.is_due()
             && let Some(image) = sight.panel_image()?
         {
@@ -362,7 +371,8 @@ impl Room {
 
     fn draw_eyes(
         &mut self,
-        images: &[wgpu::TextureView; 2],
+        images: &[EyeImage; 2],
+        depths: Option<&[wgpu::TextureView; 2]>,
         eyes: &[Eye; 2],
         tick: &Tick,
         wanted: Option<&[View; 2]>,
@@ -374,12 +384,13 @@ impl Room {
         let background = self.session.state().look.background;
         let [left, right] = &mut self.lenses;
         let visible = [(left, 0), (right, 1)].map(|(lens, eye): (&mut Lens, usize)| {
-            let size = images[eye].texture().size();
+            let size = images[eye].color.texture().size();
             lens.visible(&eyes[eye].frustum, [size.width, size.height])
         });
         for (eye, image) in images.iter().enumerate() {
             let picture = self.pictures.as_ref().map(|pictures| &pictures[eye]);
-            let scenery = Scenery { behind: &behind, picture, visible: visible[eye], in_front: &in_front };
+            let (depths, visible) = (depths.map(|depths| &depths[eye]), visible[eye]);
+            let scenery = Scenery { behind: &behind, picture, depths, visible, in_front: &in_front };
             self.stage.draw(&self.gpu, &mut encoder, image, &eyes[eye], background, &scenery);
         }
         if let (Some(checks), Some(pictures), Some(wanted), Some(front)) =

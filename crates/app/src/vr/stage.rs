@@ -1,5 +1,6 @@
 //! Draws what an eye sees of the room.
 
+use super::headset::EyeImage;
 use glam::{DMat4, DVec3, DVec4};
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::headset::Eye;
@@ -34,7 +35,16 @@ struct StageUniform {
     clip_from_room: [[f32; 4]; 4],
     size_px: [f32; 2],
     line_px: f32,
-    padding: u32,
+    near_m: f32,
+}
+
+/// What of a draw is kept. Depths are 1 at the nearest and 0 infinitely far away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Keeps {
+    Colors,
+    /// Those that are nearer than what there is.
+    Depths,
+    Both,
 }
 
 /// What is seen besides the background.
@@ -43,6 +53,8 @@ pub(crate) struct Scenery<'a> {
     pub(crate) behind: &'a [ColoredLine],
     /// Of the volume, premultiplied; none as long as there is none.
     pub(crate) picture: Option<&'a wgpu::TextureView>,
+    /// Of the volume, near over depth; none as long as there is none, or where depths are not kept.
+    pub(crate) depths: Option<&'a wgpu::TextureView>,
     /// The pixels in which it is drawn, each of them in one rectangle.
     pub(crate) visible: &'a [PixelRect],
     pub(crate) in_front: &'a [ColoredLine],
@@ -52,6 +64,8 @@ pub(crate) struct Scenery<'a> {
 pub(crate) struct Stage {
     layout: wgpu::BindGroupLayout,
     picture: wgpu::RenderPipeline,
+    /// Where depths are kept.
+    depth: Option<wgpu::RenderPipeline>,
     line: wgpu::RenderPipeline,
     sampler: wgpu::Sampler,
     /// In the place of a picture.
@@ -59,7 +73,12 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+    /// For colours of a format, and depths if they have one.
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        depth_format: Option<wgpu::TextureFormat>,
+    ) -> Self {
         let module = device.create_shader_module(wgpu::include_wgsl!("stage.wgsl"));
         let entry =
             |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
@@ -68,8 +87,8 @@ impl Stage {
             has_dynamic_offset: false,
             min_binding_size: None,
         };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        let texture = |filterable| wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable },
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
@@ -78,8 +97,9 @@ impl Stage {
             label: Some("stage"),
             entries: &[
                 entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT, uniform),
-                entry(1, wgpu::ShaderStages::FRAGMENT, texture),
+                entry(1, wgpu::ShaderStages::FRAGMENT, texture(true)),
                 entry(2, wgpu::ShaderStages::FRAGMENT, sampler),
+                entry(3, wgpu::ShaderStages::FRAGMENT, texture(false)),
             ],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -88,7 +108,21 @@ impl Stage {
             immediate_size: 0,
         });
         let pipeline = |[vertex, fragment]: [&'static str; 2],
-                        buffers: &[Option<wgpu::VertexBufferLayout<'_>>]| {
+                        buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+                        keeps: Keeps| {
+            let depth_stencil = depth_format.map(|format| wgpu::DepthStencilState {
+                format,
+                depth_write_enabled: Some(keeps != Keeps::Colors),
+                depth_compare: Some(if keeps == Keeps::Depths {
+                    wgpu::CompareFunction::Greater
+                } else {
+                    wgpu::CompareFunction::Always
+                }),
+                stencil: Default::default(),
+                bias: Default::default(),
+            });
+            let write_mask =
+                if keeps == Keeps::Depths { wgpu::ColorWrites::empty() } else { wgpu::ColorWrites::ALL };
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(fragment),
                 layout: Some(&pipeline_layout),
@@ -103,12 +137,13 @@ impl Stage {
                     entry_point: Some(fragment),
                     compilation_options: Default::default(),
                     targets: &[Some(wgpu::ColorTargetState {
+                        format,
                         blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                        ..format.into()
+                        write_mask,
                     })],
                 }),
                 primitive: Default::default(),
-                depth_stencil: None,
+                depth_stencil,
                 multisample: Default::default(),
                 multiview_mask: None,
                 cache: None,
@@ -131,8 +166,9 @@ impl Stage {
             view_formats: &[],
         });
         Self {
-            picture: pipeline(["everywhere", "show_picture"], &[]),
-            line: pipeline(["line_corner", "line"], &[Some(lines)]),
+            picture: pipeline(["everywhere", "show_picture"], &[], Keeps::Colors),
+            depth: depth_format.map(|_| pipeline(["everywhere", "keep_depth"], &[], Keeps::Depths)),
+            line: pipeline(["line_corner", "line"], &[Some(lines)], Keeps::Both),
             layout,
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("interpolated"),
@@ -149,7 +185,7 @@ impl Stage {
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        image: &wgpu::TextureView,
+        EyeImage { color: image, depth }: &EyeImage,
         eye: &Eye,
         background: [f32; 3],
         scenery: &Scenery<'_>,
@@ -161,7 +197,7 @@ impl Stage {
             clip_from_room: clip_from_room(eye).as_mat4().to_cols_array_2d(),
             size_px,
             line_px: (LINE_WIDTH * size_px[0]).max(1.0),
-            padding: 0,
+            near_m: eye.frustum.near_m as f32,
         };
         let buffer = |contents, usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -181,6 +217,10 @@ impl Stage {
                     resource: wgpu::BindingResource::TextureView(scenery.picture.unwrap_or(&self.nothing)),
                 },
                 wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+                wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::TextureView(scenery.depths.unwrap_or(&self.nothing)),
+                },
             ],
         });
         let lines = [scenery.behind, scenery.in_front]
@@ -197,6 +237,14 @@ impl Stage {
                     store: wgpu::StoreOp::Store,
                 },
             })],
+            depth_stencil_attachment: depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
             ..Default::default()
         });
         pass.set_bind_group(0, &group, &[]);
@@ -208,19 +256,21 @@ impl Stage {
             }
         };
         draw_lines(&mut pass, &lines[0], scenery.behind);
-        if scenery.picture.is_some() {
-            pass.set_pipeline(&self.picture);
+        let picture = scenery.picture.map(|_| &self.picture);
+        let depth = self.depth.as_ref().filter(|_| scenery.depths.is_some());
+        for pipeline in [picture, depth].into_iter().flatten() {
+            pass.set_pipeline(pipeline);
             for PixelRect { columns, rows } in scenery.visible {
                 pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
                 pass.draw(0..3, 0..1);
             }
-            pass.set_scissor_rect(0, 0, size.width, size.height);
         }
+        pass.set_scissor_rect(0, 0, size.width, size.height);
         draw_lines(&mut pass, &lines[1], scenery.in_front);
     }
 }
 
-/// The projection of an eye; depths are not kept.
+/// The projection of an eye but for depths.
 fn clip_from_room(eye: &Eye) -> DMat4 {
     let Frustum { left, right, down, up, .. } = eye.frustum;
     let (width, height) = (right - left, up - down);
@@ -240,12 +290,15 @@ mod tests {
     use glam::DQuat;
     use wheatstone_core::head::Pose;
     use wheatstone_core::headset::HiddenArea;
+    use wheatstone_render::warp::GridDepths;
 
     #[test]
     fn the_pipelines_build_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        Stage::new(&device, wgpu::TextureFormat::Rgba8Unorm);
+        for depth in [None, Some(wgpu::TextureFormat::Depth32Float)] {
+            Stage::new(&device, wgpu::TextureFormat::Rgba8Unorm, depth);
+        }
         assert_eq!(pollster::block_on(scope.pop()).map(|error| error.to_string()), None);
     }
 
@@ -278,31 +331,20 @@ mod tests {
 
     /// What an eye sees of some scenery before a blue background.
     fn seen(gpu: &Gpu, size: [u32; 2], scenery: &Scenery<'_>) -> Vec<[u8; 4]> {
-        let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm);
+        let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm, None);
         let image = canvas::texture(gpu, size, wgpu::TextureFormat::Rgba8Unorm).unwrap();
-        let view = image.create_view(&wgpu::TextureViewDescriptor::default());
+        let color = image.create_view(&wgpu::TextureViewDescriptor::default());
+        let target = EyeImage { color, depth: None };
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        stage.draw(gpu, &mut encoder, &view, &EYE, [0.0, 0.0, 1.0], scenery);
+        stage.draw(gpu, &mut encoder, &target, &EYE, [0.0, 0.0, 1.0], scenery);
         gpu.queue().submit([encoder.finish()]);
         gpu.read_texture(&image).unwrap()
     }
 
     /// A picture that is opaque and red all over.
-    fn red(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::TextureView {
-        let description = wgpu::TextureDescriptor {
-            label: Some("red"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
-        let texels = [255, 0, 0, 255].repeat((width * height) as usize);
-        let order = wgpu::util::TextureDataOrder::LayerMajor;
-        let texture = gpu.device().create_texture_with_data(gpu.queue(), &description, order, &texels);
-        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    fn red(gpu: &Gpu, size: [u32; 2]) -> wgpu::TextureView {
+        let texels = [255, 0, 0, 255].repeat((size[0] * size[1]) as usize);
+        filled(gpu, size, wgpu::TextureFormat::Rgba8Unorm, &texels)
     }
 
     #[test]
@@ -339,6 +381,92 @@ mod tests {
             }
             assert!(drawn < 64 * 48 * 3 / 4, "{drawn}");
             assert!(texels.contains(&[0, 255, 0, 255]), "lines are drawn wherever they are");
+        });
+    }
+
+    /// A texture of a format with some texels.
+    fn filled(
+        gpu: &Gpu,
+        [width, height]: [u32; 2],
+        format: wgpu::TextureFormat,
+        texels: &[u8],
+    ) -> wgpu::TextureView {
+        let description = wgpu::TextureDescriptor {
+            label: Some("filled"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        let texture = gpu.device().create_texture_with_data(gpu.queue(), &description, order, texels);
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    #[test]
+    fn depths_are_those_of_the_nearest_of_picture_and_lines() {
+        on_device(|gpu| {
+            let size = [64, 48];
+            let picture = red(gpu, size);
+            // The left half is 4 m away, the right half nowhere; at half the picture's width and height.
+            let near_m = EYE.frustum.near_m as f32;
+            let texels: Vec<f32> =
+                (0..32 * 24).map(|index| if index % 32 < 16 { near_m / 4.0 } else { 0.0 }).collect();
+            let depths = filled(gpu, [32, 24], GridDepths::FORMAT, bytemuck::cast_slice(&texels));
+            // Across the picture, through the middles of rows: below its middle behind the left half, above it in front.
+            let line = |y: f64, depth_m: f64| {
+                let end = |x: f64| depth_m * DVec3::new(x, y, -1.0);
+                ColoredLine::new([end(-0.9), end(0.9)], [1.0; 2], [0.0, 1.0, 0.0])
+            };
+            let (behind, in_front) = ([line(-12.5 / 24.0, 8.0)], [line(11.5 / 24.0, 2.0)]);
+            let texture = |format, usage| {
+                gpu.device().create_texture(&wgpu::TextureDescriptor {
+                    label: Some("stage"),
+                    size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format,
+                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+                    view_formats: &[],
+                })
+            };
+            let color = texture(wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureUsages::COPY_SRC);
+            let depth = texture(wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::COPY_SRC);
+            let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+            let target = EyeImage { color: view(&color), depth: Some(view(&depth)) };
+            let visible = [PixelRect { columns: 0..size[0], rows: 0..size[1] }];
+            let scenery = Scenery {
+                behind: &behind,
+                picture: Some(&picture),
+                depths: Some(&depths),
+                visible: &visible,
+                in_front: &in_front,
+            };
+            let stage = Stage::new(gpu.device(), color.format(), Some(depth.format()));
+            let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            stage.draw(gpu, &mut encoder, &target, &EYE, [0.0; 3], &scenery);
+            gpu.queue().submit([encoder.finish()]);
+            let found: Vec<f32> = gpu.read_texture(&depth).unwrap();
+            let depth_at = |x: usize, y: usize| near_m / found[y * size[0] as usize + x];
+            for (x, y, depth_m) in [
+                (16, 24, 4.0),
+                (48, 24, f32::INFINITY),
+                (16, 36, 4.0),
+                (48, 36, 8.0),
+                (16, 12, 2.0),
+                (48, 12, 2.0),
+                (16, 2, 4.0),
+            ] {
+                let found_m = depth_at(x, y);
+                assert!(
+                    found_m == depth_m || (found_m - depth_m).abs() < 1e-3 * depth_m,
+                    "{x} {y}: {found_m} m"
+                );
+            }
         });
     }
 }

@@ -6,12 +6,16 @@ struct Stage {
     size_px: vec2f,
     // Width of lines, pixels.
     line_px: f32,
+    // Nearest depth of the eye's frustum, metres.
+    near_m: f32,
 }
 
 @group(0) @binding(0) var<uniform> stage: Stage;
 // Premultiplied.
 @group(0) @binding(1) var picture: texture_2d<f32>;
 @group(0) @binding(2) var interpolated: sampler;
+// Of the picture, near over depth.
+@group(0) @binding(3) var depths: texture_2d<f32>;
 
 // Least depth that lines are drawn at, metres.
 const NEAR_M: f32 = 0.01;
@@ -24,6 +28,18 @@ fn everywhere(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
 @fragment
 fn show_picture(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     return textureSampleLevel(picture, interpolated, pixel.xy / stage.size_px, 0.0);
+}
+
+struct Depth {
+    // Is not written.
+    @location(0) color: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn keep_depth(@builtin(position) pixel: vec4f) -> Depth {
+    let at = pixel.xy / stage.size_px * vec2f(textureDimensions(depths));
+    return Depth(vec4f(0.0), textureLoad(depths, vec2i(at), 0).x);
 }
 
 struct Corner {
@@ -51,7 +67,7 @@ fn line_corner(
     let side = select(-1.0, 1.0, (number & 1u) == 1u);
     let end = select(a, b, is_end);
     let is_visible = ends[0].w > NEAR_M || ends[1].w > NEAR_M;
-    let position = vec4f(end.xy + side * across * end.w, 0.0, select(0.0, end.w, is_visible));
+    let position = vec4f(end.xy + side * across * end.w, min(stage.near_m, end.w), select(0.0, end.w, is_visible));
     let alpha = select(begin.w, finish.w, is_end);
     return Corner(position, vec4f(rgb * alpha, alpha));
 }

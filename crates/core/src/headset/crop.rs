@@ -6,6 +6,12 @@ use crate::head::Pose;
 use crate::scene::{Clip, ClipPlane};
 use glam::{DAffine3, DVec3};
 
+/// How near fingers are to what they drag, metres, ...
+const NEAR_M: f64 = 0.03;
+
+/// and of small volumes, in longest sides: fingers fit in between.
+const NEAR_SIDES: f64 = 0.1;
+
 /// What can be dragged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Handle {
@@ -120,6 +126,36 @@ impl Crop {
                 .all(|(_, [inside, gained])| inside + distance_m * gained >= 0.0);
             (distance_m >= 0.0 && is_in_volume).then_some((handle, distance_m))
         })
+    }
+
+    /// What of the visible part's boundary is nearest to a point in world space that is near it, metres: a face, or the plane where it
+    /// cuts.
+    pub(super) fn near(
+        &self,
+        point_m: DVec3,
+        stand: &Stand,
+        upright_from_texture: DAffine3,
+    ) -> Option<Handle> {
+        let Clip { box_lo, box_hi, plane } = self.clip;
+        let point = stand.world_from_upright().inverse().transform_point3(point_m);
+        let texture_from_upright = upright_from_texture.inverse();
+        let in_texture = texture_from_upright.transform_point3(point);
+        let clamped = |at: DVec3| upright_from_texture.transform_point3(at.clamp(box_lo, box_hi));
+        let faces = (0..6_usize).filter_map(|face| {
+            let mut on_face = in_texture.clamp(box_lo, box_hi);
+            on_face[face % 3] = self.clip.face(face);
+            let nearest = upright_from_texture.transform_point3(on_face);
+            let is_cut_away = plane.is_some_and(|plane| plane.normal.dot(nearest) < plane.offset_m);
+            (!is_cut_away).then_some((Handle::Face(face), nearest))
+        });
+        let on_plane = plane.map(|plane| {
+            let foot = point - plane.normal * (plane.normal.dot(point) - plane.offset_m);
+            (Handle::Plane, clamped(texture_from_upright.transform_point3(foot)))
+        });
+        let near = (NEAR_M / stand.longest_side_m).min(NEAR_SIDES);
+        let distances = faces.chain(on_plane).map(|(handle, nearest)| (handle, point.distance(nearest)));
+        let (handle, distance) = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (distance <= near).then_some(handle)
     }
 
     /// The same with something taken from where it is in another crop, and moved rigidly in upright space together with a point of

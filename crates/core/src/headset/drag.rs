@@ -10,7 +10,8 @@ use glam::{DAffine3, DVec3};
 ///
 /// What a hand picks when it pulls the trigger is fixed to it as if by a rod, however far away it is: the picked point moves
 /// rigidly with the hand, all in a space that goes with the volume. A plane moves and turns with the rod, a face goes with its end
-/// along the axis of its own. A hand that reaches into the visible part picks what it points at from within.
+/// along the axis of its own. A hand that reaches into the visible part picks what it points at from within. A bare hand picks what its
+/// fingers are near.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Drags {
     triggers: [Button; 2],
@@ -34,6 +35,13 @@ struct Start {
     upright_from_hand: DAffine3,
     point: DVec3,
     crop: Crop,
+}
+
+/// How a hand picks.
+enum Reach {
+    Along(Ray),
+    /// World space, metres.
+    At(DVec3),
 }
 
 impl Drags {
@@ -60,11 +68,18 @@ impl Drags {
                 drag.follow(crop, hand, upright_from_texture);
             }
         }
-        let rays = free.map(|aim| aim.map(|aim| Ray::new(&aim, stand, upright_from_texture)));
+        let reaches = [0, 1].map(|side: usize| {
+            let aim = free[side]?;
+            Some(match hands[side].pinch {
+                Some(_) => Reach::At(aim.position_m),
+                None => Reach::Along(Ray::new(&aim, stand, upright_from_texture)),
+            })
+        });
+        let spaces = (stand, upright_from_texture);
         let has_taken = [0, 1].map(|side: usize| {
             if has_pulled[side] {
-                self.drags[side] = rays[side].as_ref().zip(free[side]).and_then(|(ray, aim)| {
-                    let (handle, point) = self.pick(side, crop, ray)?;
+                self.drags[side] = reaches[side].as_ref().zip(free[side]).and_then(|(reach, aim)| {
+                    let (handle, point) = self.pick(side, crop, reach, spaces)?;
                     let upright_from_hand = upright_from_world * aim.world_from_own();
                     let start = Start { upright_from_hand, point, crop: *crop };
                     Some(Drag { handle, point, from: Some(start) })
@@ -72,19 +87,34 @@ impl Drags {
             }
             has_pulled[side] && self.drags[side].is_some()
         });
-        self.picked = [0, 1].map(|side: usize| match (&rays[side], self.drags[side]) {
+        self.picked = [0, 1].map(|side: usize| match (&reaches[side], self.drags[side]) {
             (Some(_), Some(drag)) => Some((drag.handle, drag.point)),
-            (Some(ray), None) => self.pick(side, crop, ray),
+            (Some(reach), None) => self.pick(side, crop, reach, spaces),
             (None, _) => None,
         });
         has_taken
     }
 
-    /// What a hand points at, unless the other one drags it, and where, upright space.
-    fn pick(&self, side: usize, crop: &Crop, ray: &Ray) -> Option<(Handle, DVec3)> {
-        let (handle, distance_m) = crop.pick(ray)?;
+    /// What a hand reaches, unless the other one drags it, and where, upright space.
+    fn pick(
+        &self,
+        side: usize,
+        crop: &Crop,
+        reach: &Reach,
+        (stand, upright_from_texture): (&Stand, DAffine3),
+    ) -> Option<(Handle, DVec3)> {
+        let (handle, point) = match reach {
+            Reach::Along(ray) => {
+                let (handle, distance_m) = crop.pick(ray)?;
+                (handle, ray.at(distance_m))
+            }
+            Reach::At(point_m) => {
+                let handle = crop.near(*point_m, stand, upright_from_texture)?;
+                (handle, stand.world_from_upright().inverse().transform_point3(*point_m))
+            }
+        };
         let is_taken = self.drags[1 - side].is_some_and(|drag| drag.handle == handle);
-        (!is_taken).then(|| (handle, ray.at(distance_m)))
+        (!is_taken).then_some((handle, point))
     }
 
     /// What the hands point at, or drag.

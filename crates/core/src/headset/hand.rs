@@ -1,6 +1,7 @@
 //! A hand and what it does with its controller, or bare.
 
 use crate::head::Pose;
+use glam::DVec3;
 
 /// Which hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,7 +32,7 @@ pub struct Hand {
     pub grip: Option<Pose>,
     /// Of the ray that points, along its −Z, world space.
     pub aim: Option<Pose>,
-    /// How far the grip is squeezed (or thumb and index finger of a bare hand are pinched together), 0 to 1.
+    /// How far the grip is squeezed, 0 to 1.
     pub squeeze: f32,
     /// How far the trigger is pulled, 0 to 1.
     pub trigger: f32,
@@ -39,6 +40,17 @@ pub struct Hand {
     pub stick: [f32; 2],
     /// Whether the menu button is down.
     pub menu: bool,
+    /// Of a bare hand that is seen well enough: it squeezes, or pulls a trigger, by pinching.
+    pub pinch: Option<Pinch>,
+}
+
+/// Thumb and index finger of a bare hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pinch {
+    /// The middle between their tips, world space, metres.
+    pub position_m: DVec3,
+    /// How far they are closed: 0 to 1, when their skins touch.
+    pub closed: f32,
 }
 
 /// A pose that can be reckoned with: valid, its orientation of unit length to the last digit, and not absurdly far away.

@@ -3,6 +3,7 @@
 use super::crop::{Crop, Picked};
 use super::drag::Drags;
 use super::grasp::Grasp;
+use super::pinches::Pinches;
 use super::stick::Sticks;
 use super::{Stand, Tick};
 use crate::scene::{Clip, Placement};
@@ -17,6 +18,7 @@ use glam::DAffine3;
 /// | squeeze of one hand | carries the volume, wherever the hand is |
 /// | squeeze of both hands | carries it with the line between the hands, and scales it with the line's length |
 /// | trigger | drags the face of the visible box, or the clip plane, that the hand points at |
+/// | pinch of a bare hand | near a face of the visible box or the clip plane it drags that, else it squeezes |
 /// | stick left, right | preset before, next preset |
 /// | stick up, down | shifts the window; with the trigger pulled it widens or narrows the window |
 ///
@@ -59,6 +61,7 @@ pub struct Interaction {
     upright_from_texture: DAffine3,
     stand: Stand,
     crop: Crop,
+    pinches: Pinches,
     grasp: Grasp,
     drags: Drags,
     sticks: Sticks,
@@ -88,6 +91,7 @@ impl Interaction {
             upright_from_texture: world_from_patient(grid, up) * grid.patient_from_texture(),
             stand,
             crop: Crop::new(clip, &stand),
+            pinches: Pinches::default(),
             grasp: Grasp::default(),
             drags: Drags::default(),
             sticks: Sticks::default(),
@@ -97,16 +101,17 @@ impl Interaction {
     /// What the hands do next, while values are normalised by a window.
     pub fn update(&mut self, tick: &Tick, window: Window) -> Changes {
         let (stand_before, clip_before) = (self.stand, self.clip());
-        let (stand, grabbed) = self.grasp.update(self.stand, &tick.hands);
+        let hands = self.pinches.update(&tick.hands, &self.crop, &self.stand, self.upright_from_texture);
+        let (stand, grabbed) = self.grasp.update(self.stand, &hands);
         self.stand = stand;
         let dragged = self.drags.update(
             &mut self.crop,
-            &tick.hands,
+            &hands,
             self.grasp.is_closed(),
             &self.stand,
             self.upright_from_texture,
         );
-        let wish = self.sticks.update(tick.display_time_s, &tick.hands, self.drags.is_pulled());
+        let wish = self.sticks.update(tick.display_time_s, &hands, self.drags.is_pulled());
         Changes {
             has_moved: self.stand != stand_before,
             has_clipped: self.clip() != clip_before,

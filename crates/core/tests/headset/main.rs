@@ -10,6 +10,7 @@ mod hands;
 mod hidden_area;
 mod late;
 mod middle_eye;
+mod pinches;
 mod pointer;
 mod recording;
 mod stand;

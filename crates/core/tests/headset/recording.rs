@@ -5,15 +5,25 @@ use glam::DQuat;
 use proptest::prelude::*;
 use wheatstone_core::head::{Display, Pose};
 use wheatstone_core::headset::{
-    Demonstration, Eye, Hand, LineError, Recorder, Recording, RecordingError, Tick, TickError,
+    Demonstration, Eye, Hand, LineError, Pinch, Recorder, Recording, RecordingError, Tick, TickError,
 };
 use wheatstone_core::view::AnatomicalDirection::Superior;
 use wheatstone_core::view::Frustum;
 
 fn any_hand() -> impl Strategy<Value = Hand> {
     let pressed = (0.0_f32..=1.0, 0.0_f32..=1.0, prop::array::uniform2(-1.0_f32..=1.0), any::<bool>());
-    (prop::option::of(poses()), prop::option::of(poses()), pressed).prop_map(
-        |(grip, aim, (squeeze, trigger, stick, menu))| Hand { grip, aim, squeeze, trigger, stick, menu },
+    let pinch =
+        (poses(), 0.0_f32..=1.0).prop_map(|(pose, closed)| Pinch { position_m: pose.position_m, closed });
+    (prop::option::of(poses()), prop::option::of(poses()), pressed, prop::option::of(pinch)).prop_map(
+        |(grip, aim, (squeeze, trigger, stick, menu), pinch)| Hand {
+            grip,
+            aim,
+            squeeze,
+            trigger,
+            stick,
+            menu,
+            pinch,
+        },
     )
 }
 

@@ -50,6 +50,7 @@ files! {
     "lib/gradient_central_quads",
     "lib/gradient_tetrahedron",
     "lib/gradient_uniform",
+    "lib/grid_surface",
     "lib/join_over",
     "lib/join_sum",
     "lib/layer_words",
@@ -138,6 +139,7 @@ files! {
     "warp/depth_range",
     "warp/depth_tiles",
     "warp/grid",
+    "warp/grid_depth",
     "warp/quad",
     "warp/volumetric",
 }

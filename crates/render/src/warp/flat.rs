@@ -1,47 +1,18 @@
 //! Quad and grid.
 
-use super::flat_uniform::WarpUniform;
-use super::pass::{BLANK, TEXTURE, build, draw, float_texture, layout};
+use super::flat_bindings::{FILTERED, FlatBindings, Interpolation, LOADED};
+use super::pass::{BLANK, build, draw};
 use super::{Canvas, Shown};
 use crate::gpu::{Gpu, GpuError};
-use crate::groups::bind;
 use crate::pipeline::KernelFiles;
-use wgpu::util::DeviceExt as _;
 use wheatstone_core::view::View;
 use wheatstone_core::warp::{GridSettings, PixelMap, WarpError};
-
-/// How colours between pixels are found.
-struct Interpolation {
-    colors: wgpu::BindingType,
-    sampler: wgpu::SamplerBindingType,
-    filter: wgpu::FilterMode,
-    /// The file of the slot.
-    bilinear: &'static str,
-}
-
-/// By the sampler.
-const FILTERED: Interpolation = Interpolation {
-    colors: float_texture(true),
-    sampler: wgpu::SamplerBindingType::Filtering,
-    filter: wgpu::FilterMode::Linear,
-    bilinear: "lib/bilinear_filtered",
-};
-
-/// By the kernel.
-const LOADED: Interpolation = Interpolation {
-    colors: TEXTURE,
-    sampler: wgpu::SamplerBindingType::NonFiltering,
-    filter: wgpu::FilterMode::Nearest,
-    bilinear: "lib/bilinear_loaded",
-};
 
 /// Warps to pictures of a format.
 #[derive(Debug)]
 pub struct Warps {
     format: wgpu::TextureFormat,
-    layout: wgpu::BindGroupLayout,
-    /// Of colours and of depths.
-    samplers: [wgpu::Sampler; 2],
+    bindings: FlatBindings,
     blank: wgpu::RenderPipeline,
     quad: wgpu::RenderPipeline,
     grid: wgpu::RenderPipeline,
@@ -76,22 +47,12 @@ impl Warps {
         format: wgpu::TextureFormat,
         interpolation: &Interpolation,
     ) -> Result<Self, GpuError> {
-        let samplers = [interpolation.sampler, wgpu::SamplerBindingType::NonFiltering];
-        let [colors, depths] = samplers.map(wgpu::BindingType::Sampler);
-        let layout = layout::<WarpUniform>(device, &[interpolation.colors, TEXTURE, colors, depths]);
+        let bindings = FlatBindings::new(device, interpolation);
         let choices = [("lib/bilinear", interpolation.bilinear)];
         let files = |root, entry_point| KernelFiles { root, choices: &choices, entry_point };
         let [blank, quad, grid] = [BLANK, files("warp/quad", "warp_quad"), files("warp/grid", "warp_grid")]
-            .map(|files| build(device, &layout, &files, format));
-        let samplers = [interpolation.filter, wgpu::FilterMode::Nearest].map(|filter| {
-            device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("shown picture"),
-                mag_filter: filter,
-                min_filter: filter,
-                ..Default::default()
-            })
-        });
-        Ok(Self { format, layout, samplers, blank: blank?, quad: quad?, grid: grid? })
+            .map(|files| build(device, &bindings.layout, &files, format));
+        Ok(Self { format, bindings, blank: blank?, quad: quad?, grid: grid? })
     }
 
     /// The format of the pictures.
@@ -115,7 +76,7 @@ impl Warps {
         let map = PixelMap::between(wanted, &shown.view)?;
         let plane = map.plane_before_eye(shown.reach.middle());
         let covered = shown.covered(wanted, plane..plane)?;
-        let group = self.bind(gpu, &map.onto_plane(plane), shown, wanted, GridSettings::default());
+        let group = self.bindings.group(gpu, &map.onto_plane(plane), shown, wanted, GridSettings::default());
         draw(encoder, [&self.blank, &self.quad], &group, &covered, into, wanted)
     }
 
@@ -135,34 +96,8 @@ impl Warps {
         settings.check()?;
         let covered = shown.covered(wanted, 0.0..shown.reach.nearest)?;
         let map = PixelMap::between(wanted, &shown.view)?;
-        let group = self.bind(gpu, &map, shown, wanted, settings);
+        let group = self.bindings.group(gpu, &map, shown, wanted, settings);
         draw(encoder, [&self.blank, &self.grid], &group, &covered, into, wanted)
-    }
-
-    fn bind(
-        &self,
-        gpu: &Gpu,
-        map: &PixelMap,
-        shown: &Shown<'_>,
-        wanted: &View,
-        settings: GridSettings,
-    ) -> wgpu::BindGroup {
-        let uniform = WarpUniform::new(map, shown, wanted, settings);
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("warp"),
-            contents: bytemuck::bytes_of(&uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let [color, depth] = [&shown.target.color, &shown.target.depth]
-            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-        let resources = [
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&color),
-            wgpu::BindingResource::TextureView(&depth),
-            wgpu::BindingResource::Sampler(&self.samplers[0]),
-            wgpu::BindingResource::Sampler(&self.samplers[1]),
-        ];
-        bind(&gpu.device, &self.layout, &resources)
     }
 }
 

@@ -7,7 +7,9 @@
 mod canvas;
 mod depths;
 mod flat;
+mod flat_bindings;
 mod flat_uniform;
+mod grid_depths;
 mod layers;
 mod pass;
 mod picture;
@@ -20,6 +22,7 @@ pub use canvas::Canvas;
 pub(crate) use depths::kernel_files;
 pub use depths::{DepthPass, LayerDepths};
 pub use flat::Warps;
+pub use grid_depths::GridDepths;
 pub use picture::Picture;
 pub use shown::Shown;
 pub use volumetric::VolumetricWarps;

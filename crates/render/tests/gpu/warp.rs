@@ -10,7 +10,7 @@ use wheatstone_core::scene::Settings;
 use wheatstone_core::view::{Frustum, PixelRect, Projection, View};
 use wheatstone_core::volume::VoxelType;
 use wheatstone_core::warp::{self, GridSettings, Reach, WarpError};
-use wheatstone_render::warp::{Canvas, Picture, Shown, Warps};
+use wheatstone_render::warp::{Canvas, GridDepths, Picture, Shown, Warps};
 use wheatstone_render::{Gpu, GpuVolume, Prepared, Renderer, Sources, Target};
 
 /// Divisible by nothing that passes are made of.
@@ -143,6 +143,47 @@ fn grids_are_those_of_the_twin() {
             let (largest, others) = differences(&found, &twin);
             eprintln!("grid {case}: {others:.5} of the pixels, {largest}");
             assert!(others < 0.002 && dssim(&found, &twin) < 1e-4, "{case}: {others} {largest}");
+        }
+    });
+}
+
+#[test]
+fn depths_of_grids_are_those_of_the_twin() {
+    on_device(|gpu, renderer| {
+        let scene = Scene::cast(gpu, renderer, front());
+        let depths = GridDepths::new(gpu).unwrap();
+        let mut random = fastrand::Rng::with_seed(4);
+        let settings = GridSettings::default();
+        for case in 0..6 {
+            let near_m = 0.25;
+            let mut wanted = if case == 0 { scene.view } else { wanted(&mut random, &scene.view) };
+            if let Projection::Perspective(frustum) = &mut wanted.projection {
+                frustum.near_m = near_m;
+            }
+            let twin = warp::grid(&scene.view, &scene.image, &wanted, settings).unwrap();
+            let [width, height] = wanted.size;
+            let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+                label: Some("depths"),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: GridDepths::FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let mut into = Canvas::new(texture.create_view(&wgpu::TextureViewDescriptor::default()));
+            let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            depths.encode(gpu, &mut encoder, &scene.shown(), &wanted, settings, &mut into).unwrap();
+            gpu.queue().submit([encoder.finish()]);
+            let found: Vec<f32> = gpu.read_texture(&texture).unwrap();
+            let expected: Vec<f32> =
+                twin.depth_m.iter().map(|&depth_m| (near_m as f32 / depth_m).clamp(0.0, 1.0)).collect();
+            let others = found.iter().zip(&expected).filter(|(a, b)| (*a - *b).abs() > 1e-4).count();
+            let hits = expected.iter().filter(|&&depth| depth > 0.0).count();
+            assert!(hits > 1000, "{case}: {hits}");
+            // Rounding moves a few rays across the edge of a pixel.
+            assert!(others < hits / 250, "{case}: {others} of {hits}");
         }
     });
 }

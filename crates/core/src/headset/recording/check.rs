@@ -82,6 +82,12 @@ fn checked_hand(hand: Hand) -> Result<Hand, TickError> {
     within("trigger", hand.trigger.into(), [0.0, 1.0])?;
     within("stick", right.into(), [-1.0, 1.0])?;
     within("stick", up.into(), [-1.0, 1.0])?;
+    if let Some(pinch) = hand.pinch {
+        within("pinch", pinch.closed.into(), [0.0, 1.0])?;
+        if !pinch.position_m.is_finite() {
+            return Err(TickError::Pose("pinch"));
+        }
+    }
     Ok(Hand { grip: pose("grip", hand.grip)?, aim: pose("aim", hand.aim)?, ..hand })
 }
 

@@ -2,7 +2,7 @@
 
 use super::error::LineError;
 use crate::head::Pose;
-use crate::headset::{Eye, Hand, Tick};
+use crate::headset::{Eye, Hand, Pinch, Tick};
 use crate::view::Frustum;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -68,6 +68,15 @@ struct HandForm {
     trigger: f32,
     stick: [f32; 2],
     menu: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pinch: Option<PinchForm>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PinchForm {
+    position_m: DVec3,
+    closed: f32,
 }
 
 impl Header {
@@ -156,15 +165,17 @@ impl From<PoseForm> for Pose {
 }
 
 impl From<Hand> for HandForm {
-    fn from(Hand { grip, aim, squeeze, trigger, stick, menu }: Hand) -> Self {
+    fn from(Hand { grip, aim, squeeze, trigger, stick, menu, pinch }: Hand) -> Self {
         let form = |pose: Option<Pose>| pose.map(PoseForm::from);
-        Self { grip: form(grip), aim: form(aim), squeeze, trigger, stick, menu }
+        let pinch = pinch.map(|Pinch { position_m, closed }| PinchForm { position_m, closed });
+        Self { grip: form(grip), aim: form(aim), squeeze, trigger, stick, menu, pinch }
     }
 }
 
 impl From<HandForm> for Hand {
-    fn from(HandForm { grip, aim, squeeze, trigger, stick, menu }: HandForm) -> Self {
+    fn from(HandForm { grip, aim, squeeze, trigger, stick, menu, pinch }: HandForm) -> Self {
         let pose = |form: Option<PoseForm>| form.map(Pose::from);
-        Self { grip: pose(grip), aim: pose(aim), squeeze, trigger, stick, menu }
+        let pinch = pinch.map(|PinchForm { position_m, closed }| Pinch { position_m, closed });
+        Self { grip: pose(grip), aim: pose(aim), squeeze, trigger, stick, menu, pinch }
     }
 }

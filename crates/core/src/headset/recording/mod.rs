@@ -9,7 +9,7 @@ pub use check::TickError;
 pub use error::{LineError, RecordingError};
 pub use recorder::Recorder;
 
-use super::{Eye, Hand, Tick};
+use super::{Eye, Hand, Pinch, Tick};
 use crate::head::{Display, Pose};
 use line::{Header, TickLine};
 use std::io::{BufRead, Read, Write};
@@ -117,7 +117,12 @@ impl Recording {
         });
         let hands = [0, 1].map(|side: usize| {
             let (before, after) = (before.hands[side], after.hands[side]);
-            Hand { grip: between(before.grip, after.grip), aim: between(before.aim, after.aim), ..before }
+            let pinch = before.pinch.zip(after.pinch).map(|(before, after)| Pinch {
+                position_m: before.position_m.lerp(after.position_m, share),
+                ..before
+            });
+            let (grip, aim) = (between(before.grip, after.grip), between(before.aim, after.aim));
+            Hand { grip, aim, pinch, ..before }
         });
         Some(Tick { display_time_s: time_s, eyes, hands, ..*before })
     }
