@@ -155,15 +155,38 @@ impl Casting {
 
     /// Casts a whole picture of what a state shows, whatever it takes.
     pub(crate) fn render(&mut self, gpu: &Gpu, state: &State, view: View) -> Result<Image, Failure> {
-        let Self { renderer, scene: Some(scene) } = self else {
+        let structure = self.skipping()?.and_then(|skipping| skipping.at_rest(&state.look));
+        Ok(self.cast(gpu, state, structure, view)?.read(gpu)?.image)
+    }
+
+    /// Casts a view of what a state shows, once by each skip map that it may get, so that kernels are there when they are wanted.
+    pub(crate) fn rehearse(&mut self, gpu: &Gpu, state: &State, view: View) -> Result<(), Failure> {
+        let structures = self.skipping()?.map_or([None; 2], |skipping| {
+            [skipping.while_edited(&state.look), skipping.at_rest(&state.look)]
+        });
+        structures.into_iter().try_for_each(|structure| self.cast(gpu, state, structure, view).map(drop))
+    }
+
+    fn skipping(&self) -> Result<Option<&Skipping>, Failure> {
+        let scene = self.scene.as_ref().ok_or_else(|| Failure::input("no volume is shown"))?;
+        Ok(scene.skipping.as_ref())
+    }
+
+    fn cast(
+        &mut self,
+        gpu: &Gpu,
+        state: &State,
+        structure: Option<Structure>,
+        view: View,
+    ) -> Result<Target, Failure> {
+        let Self { renderer, scene: Some(Scene { grid, volume, skipping, .. }) } = self else {
             return Err(Failure::input("no volume is shown"));
         };
-        let Scene { grid, volume, skipping, .. } = scene;
-        let structure = skipping.as_ref().and_then(|skipping| skipping.at_rest(&state.look));
         let prepared = prepare(gpu, renderer, (grid, volume), skipping.as_mut(), structure, state)?;
         let mut targets = [Target::new(gpu, view.size)?];
         renderer.render(gpu, &prepared, &[view], &mut targets)?;
-        Ok(targets[0].read(gpu)?.image)
+        let [target] = targets;
+        Ok(target)
     }
 
     /// The newest whole picture.

@@ -16,6 +16,7 @@ mod openxr;
 mod panel;
 mod pointing;
 mod record;
+mod rehearsal;
 mod replay;
 mod report;
 mod room;

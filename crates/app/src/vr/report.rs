@@ -17,6 +17,8 @@ pub(crate) struct Report {
     pub(crate) volume: String,
     pub(crate) period_s: f64,
     pub(crate) late: Late,
+    /// What was done before the first refresh.
+    pub(crate) warm_up: Duration,
     pub(crate) draws: Vec<Duration>,
     /// Refreshes by the warp that showed them.
     pub(crate) warps: BTreeMap<&'static str, u32>,
@@ -66,6 +68,8 @@ impl Report {
             "shown": self.late.total().shown,
             "dropped": self.late.total().dropped,
             "pictures": self.pictures,
+            "warm_up_ms": 1e3 * self.warm_up.as_secs_f64(),
+            "draw_ms_first": self.draws.first().map(|draw| 1e3 * draw.as_secs_f64()),
             "draw_ms_median": median,
             "draw_ms_p99": p99,
             "draw_ms_worst": most,

@@ -17,7 +17,7 @@ use crate::viewer::eyes::{Eyes, Wanted};
 use crate::viewer::lens::Lens;
 use crate::viewer::loading::Arrived;
 use crate::viewer::session::{Session, Showing};
-use crate::viewer::state::EyeMethod;
+use crate::viewer::state::{EyeMethod, WarpName};
 use crate::viewer::timings::{Frame, Timings};
 use std::sync::Arc;
 use std::thread;
@@ -111,30 +111,28 @@ pub(crate) struct Mirrored<'a> {
 
 /// The volume, what looks at it, and what takes hold of it.
 pub(crate) struct Room {
-    gpu: Arc<Gpu>,
-    session: Session,
-    arrived: Option<(Box<Arrived>, Showing)>,
-    /// Not done yet.
-    commands: Vec<Command>,
-    casting: Casting,
-    eyes: Eyes,
+    pub(super) gpu: Arc<Gpu>,
+    pub(super) session: Session,
+    pub(super) casting: Casting,
+    pub(super) eyes: Eyes,
     /// Before the eyes' images.
     lenses: [Lens; 2],
-    stage: Stage,
+    pub(super) stage: Stage,
     /// Where depths are kept.
-    depths: Option<Depths>,
+    pub(super) depths: Option<Depths>,
     panel: Panel,
     hands: Option<Hands>,
     pointing: Option<Pointing>,
     ladder: Ladder,
     checks: Option<Checks>,
-    scale: Scale,
+    pub(super) scale: Scale,
+    /// Where the volume is to stand when hands can take it; none before the eyes.
     stand: Option<Stand>,
     has_floor: bool,
     refreshes: Option<u64>,
     aimed: Vec<View>,
     tick: Option<Tick>,
-    pictures: Option<[wgpu::TextureView; 2]>,
+    pub(super) pictures: Option<[wgpu::TextureView; 2]>,
     timings: Timings,
     told: Vec<String>,
     report: Report,
@@ -150,10 +148,8 @@ impl Room {
             has_depth_layer: headset.depth_format().is_some(),
             ..Report::default()
         };
-        Ok(Self {
+        let mut room = Self {
             session,
-            arrived: Some(arrived),
-            commands,
             casting: Casting::new(&gpu)?,
             eyes: Eyes::new(&gpu)?,
             lenses: Default::default(),
@@ -175,7 +171,11 @@ impl Room {
             told: Vec::new(),
             report,
             gpu,
-        })
+        };
+        let begun = Instant::now();
+        room.rehearse(headset, arrived, &commands)?;
+        room.report.warm_up = begun.elapsed();
+        Ok(room)
     }
 
     /// What eyes and hands did last.
@@ -231,7 +231,10 @@ impl Room {
     fn draw(&mut self, sight: &mut dyn Sight, sizes: [[u32; 2]; 2]) -> Result<[bool; 2], Failure> {
         let begun = Instant::now();
         let tick = *sight.tick();
-        self.receive(&tick, sizes)?;
+        if let Some(eyes) = &tick.eyes {
+            self.receive(eyes, sizes)?;
+        }
+        self.stand_up(&tick)?;
         let grabbed = self.follow_hands(&tick);
         self.point(&tick)?;
         let Some(eyes) = tick.eyes else {
@@ -262,7 +265,7 @@ impl Room {
         if self.panel.is_due()
             && let Some(image) = sight.panel_image()?
         {
-            self.draw_panel(&image, &tick, warp.name())?;
+            self.draw_panel(&image, tick.period_s, warp)?;
         }
         self.gpu.wait_for(submission)?;
         let took = begun.elapsed();
@@ -277,36 +280,15 @@ impl Room {
         Ok(grabbed)
     }
 
-    /// Shows a volume that has arrived: before the eyes, or where the one before stood.
-    fn receive(&mut self, tick: &Tick, sizes: [[u32; 2]; 2]) -> Result<(), Failure> {
-        // Until the head is tracked nobody knows where to put it.
-        let Some(eyes) = tick.eyes else { return Ok(()) };
-        let Some((mut arrived, showing)) = self.arrived.take().or_else(|| self.session.step(&self.gpu))
-        else {
-            return Ok(());
-        };
-        let (grid, up) = (arrived.facts.grid.clone(), showing.state.look.up.direction());
-        let between = Tick { eyes: Some(eyes), ..*tick }.between_eyes().unwrap_or(eyes[0].pose);
-        let stand = match (&self.hands, self.stand) {
-            (Some(hands), _) => *hands.stand(),
-            (None, Some(stand)) => stand,
-            (None, None) => Stand::before(&between, &grid, up, self.scale),
-        };
-        let views = self.cast_views(showing.state.stereo.method, &eyes, &stand, sizes);
-        let held = arrived.held.take();
-        match self.casting.receive(&self.gpu, *arrived, &showing.state, views.clone()) {
+    /// Shows another volume that has arrived, where the one before stood.
+    fn receive(&mut self, eyes: &[Eye; 2], sizes: [[u32; 2]; 2]) -> Result<(), Failure> {
+        let Some(hands) = &self.hands else { return Ok(()) };
+        let stand = *hands.stand();
+        let Some((arrived, showing)) = self.session.step(&self.gpu) else { return Ok(()) };
+        let views = self.cast_views(showing.state.stereo.method, eyes, &stand, sizes);
+        match self.show(arrived, showing, views) {
             Ok(()) => {
-                self.aimed = views;
-                let clip = showing.state.settings().map_err(Failure::input)?.clip;
-                self.report.volume = showing.name().to_owned();
-                self.session.show(showing);
-                let interaction = Interaction::new(&grid, up, stand, &clip);
-                self.hands = Some(Hands::new(interaction, self.session.state()));
-                let placement = Placement::of_grid(&grid, world_from_patient(&grid, up));
-                self.pointing = held.map(|caster| Pointing::new(caster, placement));
-                for command in std::mem::take(&mut self.commands) {
-                    self.session.perform(&command);
-                }
+                (self.stand, self.hands) = (Some(stand), None);
                 Ok(())
             }
             Err(Failure::Gpu(error)) => Err(error.into()),
@@ -315,6 +297,38 @@ impl Room {
                 Ok(())
             }
         }
+    }
+
+    /// Shows a volume, cast from some views first.
+    pub(super) fn show(
+        &mut self,
+        mut arrived: Box<Arrived>,
+        showing: Showing,
+        views: Vec<View>,
+    ) -> Result<(), Failure> {
+        let (grid, up) = (arrived.facts.grid.clone(), showing.state.look.up.direction());
+        let placement = Placement::of_grid(&grid, world_from_patient(&grid, up));
+        let held = arrived.held.take();
+        self.casting.receive(&self.gpu, *arrived, &showing.state, views.clone())?;
+        self.aimed = views;
+        self.pointing = held.map(|caster| Pointing::new(caster, placement));
+        self.report.volume = showing.name().to_owned();
+        self.session.show(showing);
+        Ok(())
+    }
+
+    /// Lets hands take the volume where it stands: where it is to, or before the eyes. Until the head is tracked nobody knows where that
+    /// is.
+    fn stand_up(&mut self, tick: &Tick) -> Result<(), Failure> {
+        let (None, Some(eyes), Some(facts)) = (&self.hands, tick.between_eyes(), self.session.facts()) else {
+            return Ok(());
+        };
+        let state = self.session.state();
+        let up = state.look.up.direction();
+        let stand = self.stand.unwrap_or_else(|| Stand::before(&eyes, &facts.grid, up, self.scale));
+        let clip = state.settings().map_err(Failure::input)?.clip;
+        self.hands = Some(Hands::new(Interaction::new(&facts.grid, up, stand, &clip), state));
+        Ok(())
     }
 
     fn follow_hands(&mut self, tick: &Tick) -> [bool; 2] {
@@ -347,7 +361,7 @@ impl Room {
     }
 
     /// What is to be cast for the eyes; that it is not by the method that is asked for is told once.
-    fn cast_views(
+    pub(super) fn cast_views(
         &mut self,
         method: EyeMethod,
         eyes: &[Eye; 2],
@@ -369,7 +383,7 @@ impl Room {
         self.told.push(what.to_owned());
     }
 
-    fn draw_eyes(
+    pub(super) fn draw_eyes(
         &mut self,
         images: &[EyeImage; 2],
         depths: Option<&[wgpu::TextureView; 2]>,
@@ -409,12 +423,18 @@ impl Room {
         Ok(self.gpu.queue().submit([encoder.finish()]))
     }
 
-    fn draw_panel(&mut self, image: &wgpu::TextureView, tick: &Tick, warp: &str) -> Result<(), Failure> {
+    pub(super) fn draw_panel(
+        &mut self,
+        image: &wgpu::TextureView,
+        period_s: f64,
+        warp: WarpName,
+    ) -> Result<(), Failure> {
         let state = self.session.state();
         let [lo, hi] = state.transfer.window;
         let look = format!("{}, window {lo:.4} to {hi:.4}", state.look.mode.name());
         let late = self.report.late.total();
-        let refreshes = format!("{}, warp {warp}, {} dropped", self.timings.described(), late.dropped);
+        let refreshes =
+            format!("{}, warp {}, {} dropped", self.timings.described(), warp.name(), late.dropped);
         let notes: Vec<String> = self.session.notes.latest().iter().map(|note| note.text.clone()).collect();
         let told = Told {
             volume: &self.report.volume,
@@ -423,7 +443,7 @@ impl Room {
             refreshes: &refreshes,
             notes: if notes.is_empty() { &self.told } else { &notes },
             timings: &self.timings,
-            period_ms: 1e3 * tick.period_s as f32,
+            period_ms: 1e3 * period_s as f32,
         };
         self.panel.draw(&self.gpu, image, &told)
     }

@@ -11,10 +11,11 @@ use wheatstone_core::view::AnatomicalDirection;
 use wheatstone_core::volume::Grid;
 
 /// All keys of a row of `bench vr --json`.
-const KEYS: [&str; 25] = [
+const KEYS: [&str; 27] = [
     "canted",
     "checked",
     "depth_layer",
+    "draw_ms_first",
     "draw_ms_median",
     "draw_ms_p99",
     "draw_ms_worst",
@@ -35,6 +36,7 @@ const KEYS: [&str; 25] = [
     "values_under_hands",
     "view",
     "volume",
+    "warm_up_ms",
     "warp",
     "warps",
 ];
