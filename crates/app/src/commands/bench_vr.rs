@@ -10,7 +10,7 @@ use crate::spec;
 use crate::viewer::Source;
 use crate::viewer::command::Command;
 use crate::viewer::state::{Edit, EyeMethod, WarpName};
-use crate::vr::{Beside, Connected, Guided, OpenXr, Opening, Replay, Report, Room, run as show};
+use crate::vr::{Beside, Connected, Control, Guided, OpenXr, Opening, Replay, Report, Room, run as show};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -145,6 +145,7 @@ impl VrBenchArgs {
             session,
             arrived,
             commands,
+            control: Control::Hands,
             scale: Scale::Human,
             stand,
             has_floor: false,

@@ -14,8 +14,8 @@ use crate::viewer::session::{Session, Showing};
 use crate::viewer::state::{Edit, EyeMethod, Layers, WarpName};
 use crate::volume_args::RawArgs;
 use crate::vr::{
-    Beside, Checking, Clock, Connected, DepthLayer, Guided, Mirror, OpenXr, Opening, Played, Record, Replay,
-    Room, load, run as show,
+    Beside, Checking, Clock, Connected, Control, DepthLayer, Guided, Mirror, OpenXr, Opening, Played, Record,
+    Replay, Room, load, run as show,
 };
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
@@ -158,10 +158,11 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
     let recording = args.replay.as_deref().map(read_recording).transpose()?;
     let scale = if args.life_size { Scale::True } else { Scale::Human };
-    let opening = |(session, arrived): (Session, _), stand| Opening {
+    let opening = |(session, arrived): (Session, _), stand, control| Opening {
         session,
         arrived,
         commands,
+        control,
         scale,
         stand,
         has_floor: args.floor,
@@ -178,7 +179,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
             let mut headset =
                 Replay::new(gpu, played, display, clock(args.patient), size, depth_layer(args.depth_layer))?;
             company.interrupt.watch()?;
-            show(&mut headset, opening(loaded, stand), &mut company)?
+            show(&mut headset, opening(loaded, stand, Control::Hands), &mut company)?
         }
         HeadsetName::Openxr => {
             let connected = Connected::connect()?;
@@ -186,11 +187,14 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
             if !args.no_mirror {
                 company.mirror = mirror(&connected);
             }
+            let control = if company.mirror.is_some() { Control::HandsAndWindow } else { Control::Hands };
             let headset = OpenXr::begin(connected, depth_layer(args.depth_layer))?;
             company.interrupt.watch()?;
             match recording.map(Played::Recording) {
-                Some(played) => show(&mut Guided::new(headset, played), opening(loaded, None), &mut company)?,
-                None => show(&mut { headset }, opening(loaded, None), &mut company)?,
+                Some(played) => {
+                    show(&mut Guided::new(headset, played), opening(loaded, None, control), &mut company)?
+                }
+                None => show(&mut { headset }, opening(loaded, None, control), &mut company)?,
             }
         }
     };

@@ -73,6 +73,10 @@ pub(crate) enum DepthLayer {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Moment {
     /// It wanted no pictures; what it wants is looked after again soon.
+    #[cfg_attr(
+        not(any(target_os = "linux", target_os = "windows")),
+        expect(dead_code, reason = "only runtimes idle")
+    )]
     Idle,
     /// A refresh has got its pictures.
     Shown,

@@ -11,7 +11,7 @@ mod hands;
 mod headset;
 mod ladder;
 mod mirror;
-#[cfg(any(target_os = "linux", target_os = "windows"))]
+#[cfg_attr(not(any(target_os = "linux", target_os = "windows")), path = "no_openxr.rs")]
 mod openxr;
 mod panel;
 mod pointing;
@@ -25,9 +25,8 @@ mod stage;
 pub(crate) use check::Checking;
 pub(crate) use headset::DepthLayer;
 pub(crate) use mirror::Mirror;
-#[cfg(any(target_os = "linux", target_os = "windows"))]
 pub(crate) use openxr::{Connected, OpenXr};
 pub(crate) use record::Record;
 pub(crate) use replay::{Clock, Guided, Played, Replay};
 pub(crate) use report::Report;
-pub(crate) use room::{Beside, Opening, Room, load, run};
+pub(crate) use room::{Beside, Control, Opening, Room, load, run};

@@ -13,6 +13,9 @@ use wheatstone_xr::{
     Anchor, EndReason, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
 };
 
+/// Of the panel in the room.
+const M_PER_PIXEL: f32 = 0.0004;
+
 /// How long a hand feels that it has taken hold of something, seconds, and how strongly.
 const PULSE: (f64, f32) = (0.02, 0.6);
 
@@ -151,7 +154,7 @@ fn panel_pose() -> Panel {
             position_m: DVec3::new(0.0, 0.08, -0.06),
             orientation: DQuat::from_rotation_x(-FRAC_PI_4),
         },
-        size_m: panel::SIZE.map(|side| side as f32 * panel::M_PER_PIXEL),
+        size_m: panel::SIZE.map(|side| side as f32 * M_PER_PIXEL),
     }
 }
 

@@ -13,9 +13,6 @@ use wheatstone_render::Gpu;
 /// Width and height, pixels.
 pub(crate) const SIZE: [u32; 2] = [512, 320];
 
-/// Of the panel in the room.
-pub(crate) const M_PER_PIXEL: f32 = 0.0004;
-
 /// Pixels of a point of text, which is to be read at arm's length.
 const PIXELS_PER_POINT: f32 = 1.5;
 

@@ -3,7 +3,7 @@
 use super::eyes::upright_views;
 use super::headset::{EyeImage, Headset};
 use super::panel;
-use super::room::Room;
+use super::room::{Control, Room};
 use super::stage::{ColoredLine, Scenery};
 use crate::failure::Failure;
 use crate::look::ModeName;
@@ -42,7 +42,7 @@ const MIDDLE: Pose = Pose { position_m: DVec3::ZERO, orientation: DQuat::IDENTIT
 /// Of a display, seconds.
 const PERIOD_S: f64 = 1.0 / 90.0;
 
-/// What is switched to most.
+/// What a window's panels switch to most.
 const LOOKS: [(ModeName, Shading); 4] = [
     (ModeName::Dvr, Shading::None),
     (ModeName::Dvr, Shading::Phong),
@@ -52,12 +52,13 @@ const LOOKS: [(ModeName, Shading); 4] = [
 
 impl Room {
     /// Shows the first volume as commands have it, casts a picture of it from where eyes are most likely to be, and draws by every way
-    /// that a refresh may take; and casts a little by the looks that are most common.
+    /// that a refresh may take; and casts a little as it may be shown soon: after an edit, or by the looks that are most common.
     pub(super) fn rehearse(
         &mut self,
         headset: &dyn Headset,
         (arrived, showing): (Box<Arrived>, Showing),
         commands: &[Command],
+        control: Control,
     ) -> Result<(), Failure> {
         let up = showing.state.look.up.direction();
         let stand = Stand::before(&MIDDLE, &arrived.facts.grid, up, self.scale);
@@ -72,7 +73,12 @@ impl Room {
         }
         self.rehearse_refresh(headset, &stand)?;
         let [view, _] = upright_views(&eyes(0.0), &stand, [SMALL; 2]);
-        for (mode, shading) in LOOKS {
+        let looks: &[_] = match control {
+            Control::Hands => &[],
+            Control::HandsAndWindow => &LOOKS,
+        };
+        let shown = self.session.state().look.mode_and_shading();
+        for &(mode, shading) in std::iter::once(&shown).chain(looks) {
             let mut state = self.session.state().clone();
             for edit in [Edit::Mode(mode), Edit::Shading(shading)] {
                 state.apply(&edit).map_err(Failure::input)?;

@@ -37,6 +37,15 @@ const KEPT_FREE: f64 = 0.15;
 /// Of the floor and the horizon.
 const FLOOR_RGB: [f32; 3] = [0.35, 0.4, 0.45];
 
+/// What can change how the volume is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Control {
+    /// Hands: what part of it, and its transfer function.
+    Hands,
+    /// A window's panels as well: everything.
+    HandsAndWindow,
+}
+
 /// What a session begins with.
 pub(crate) struct Opening {
     pub(crate) session: Session,
@@ -44,6 +53,7 @@ pub(crate) struct Opening {
     pub(crate) arrived: (Box<Arrived>, Showing),
     /// What is done once the volume is there.
     pub(crate) commands: Vec<Command>,
+    pub(crate) control: Control,
     pub(crate) scale: Scale,
     /// Where the volume stands at first; none before the eyes.
     pub(crate) stand: Option<Stand>,
@@ -141,7 +151,8 @@ pub(crate) struct Room {
 impl Room {
     fn new(headset: &dyn Headset, opening: Opening) -> Result<Self, Failure> {
         let gpu = Arc::clone(headset.gpu());
-        let Opening { session, arrived, commands, scale, stand, has_floor, checks, refreshes } = opening;
+        let Opening { session, arrived, commands, control, scale, stand, has_floor, checks, refreshes } =
+            opening;
         let report = Report {
             device: format!("{} ({})", gpu.description().name, gpu.description().backend),
             headset: headset.name(),
@@ -173,7 +184,7 @@ impl Room {
             gpu,
         };
         let begun = Instant::now();
-        room.rehearse(headset, arrived, &commands)?;
+        room.rehearse(headset, arrived, &commands, control)?;
         room.report.warm_up = begun.elapsed();
         Ok(room)
     }
