@@ -36,7 +36,7 @@ pub(super) const EYE: &str = "640x720";
 /// Show a volume in a headset: walk around it, take it in your hands, scale it, cut it.
 ///
 /// An OpenXR runtime shows the pictures. The squeeze of one hand carries the volume, of both hands scales it; the trigger drags the face
-/// of the visible box or the clip plane that the hand points at; the thumb-stick goes through transfer functions (left, right) and shifts
+/// of the visible box or the clip plane that the hand points at; a bare hand does both by pinching; the thumb-stick goes through transfer functions (left, right) and shifts
 /// the window (up, down). What the volume costs does not matter: it is cast a few cells per refresh, and the newest whole picture is
 /// warped to where the eyes are. It ends when the window beside the headset is closed, at Ctrl-C, or when the runtime ends it.
 #[derive(Debug, Args)]

@@ -137,7 +137,8 @@ impl Eyes {
             let mut of_marks = 0.0;
             for mark in places(grid, stand) {
                 let wanted = view.pixel_position(mark).unwrap();
-                let radius_px = 2.0 * RADIUS_MM * scale_m / mark.distance(eye.pose.position_m) * px_per_tangent;
+                let radius_px =
+                    2.0 * RADIUS_MM * scale_m / mark.distance(eye.pose.position_m) * px_per_tangent;
                 let (seen, light) = light_about(picture, wanted, radius_px);
                 of_marks += light;
                 assert!(seen.distance(wanted) < off_px, "{}: {seen} instead of {wanted}", self.name);
