@@ -188,7 +188,11 @@ impl Eyes {
 
     /// From now on lenses hide something of what the left and the right eye are shown: it is left out.
     pub(crate) fn hide(&mut self, hidden: &[HiddenArea; 2]) {
-        self.lenses.iter_mut().zip(hidden).for_each(|(lens, hidden)| lens.hide(hidden));
+        for (lens, hidden) in self.lenses.iter_mut().zip(hidden) {
+            if lens.hide(hidden) {
+                self.shown = None;
+            }
+        }
     }
 
     /// The same with something else beyond the reach of warps.

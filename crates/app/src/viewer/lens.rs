@@ -20,11 +20,13 @@ struct Known {
 }
 
 impl Lens {
-    /// One that hides something from now on.
-    pub(crate) fn hide(&mut self, hidden: &HiddenArea) {
-        if self.hidden != *hidden {
+    /// It hides something from now on; whether it has not done so before.
+    pub(crate) fn hide(&mut self, hidden: &HiddenArea) -> bool {
+        let is_other = self.hidden != *hidden;
+        if is_other {
             (self.hidden, self.known) = (hidden.clone(), None);
         }
+        is_other
     }
 
     /// The pixels of a picture of a frustum, of some width and height, that can be seen.

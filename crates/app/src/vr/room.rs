@@ -214,7 +214,9 @@ impl Room {
     fn refresh(&mut self, headset: &mut dyn Headset) -> Result<Moment, Failure> {
         let sizes = headset.eye_sizes();
         self.eyes.hide(headset.hidden_areas());
-        self.lenses.iter_mut().zip(headset.hidden_areas()).for_each(|(lens, hidden)| lens.hide(hidden));
+        for (lens, hidden) in self.lenses.iter_mut().zip(headset.hidden_areas()) {
+            lens.hide(hidden);
+        }
         let mut grabbed = [false; 2];
         let mut begun = None;
         let moment = headset.refresh(&mut |sight| {
