@@ -72,11 +72,11 @@ fn a_hand_without_a_controller_has_no_pose_and_nothing_pressed() {
 }
 
 #[test]
-fn bare_hands_squeeze_by_pinching() {
-    inside(bare_hands_squeeze_by_pinching, |monado| {
+fn bare_hands_pinch() {
+    inside(bare_hands_pinch, |monado| {
         let mut remote = monado.remote();
         let (graphics, mut session) = begin(SessionOptions::default());
-        let mut squeezes = Vec::new();
+        let mut pinches = Vec::new();
         for bent in [0.0_f32, 0.5, 1.0, 0.25] {
             let fingers = [0.0, 0.0, 0.0, bent, bent];
             let place = pose(-0.25 - f64::from(bent), 0.6);
@@ -94,11 +94,13 @@ fn bare_hands_squeeze_by_pinching() {
             };
             let tick = until(&graphics, &mut session, "the bare hand", |_, tick| is_there(&tick.hands[0]));
             let hand = tick.hands[0];
-            assert_eq!((hand.trigger, hand.stick, hand.menu), (0.0, [0.0; 2], false));
-            squeezes.push(hand.squeeze);
+            assert_eq!((hand.squeeze, hand.trigger, hand.stick, hand.menu), (0.0, 0.0, [0.0; 2], false));
+            let pinch = hand.pinch.unwrap();
+            assert!(pinch.position_m.distance(place.position_m) < 0.25, "{pinch:?} {place:?}");
+            pinches.push(pinch.closed);
         }
-        let [open, half, closed, quarter] = squeezes[..] else { unreachable!() };
+        let [open, half, closed, quarter] = pinches[..] else { unreachable!() };
         assert_eq!((open, closed), (0.0, 1.0));
-        assert!(quarter < half && half > 0.1 && half < 0.9, "{squeezes:?}");
+        assert!(quarter < half && half > 0.1 && half < 0.9, "{pinches:?}");
     });
 }
