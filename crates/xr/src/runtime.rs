@@ -33,6 +33,8 @@ pub struct RuntimeDescription {
     pub headset: String,
     /// Recommended width and height of the left and the right eye's pictures, pixels.
     pub eye_sizes: [[u32; 2]; 2],
+    /// Largest width and height of the left and the right eye's pictures, pixels.
+    pub largest_eye_sizes: [[u32; 2]; 2],
     /// Whether the head's position is tracked, not only its orientation.
     pub tracks_position: bool,
     /// Whether depths may be given along with pictures (`XR_KHR_composition_layer_depth`).
@@ -43,6 +45,18 @@ pub struct RuntimeDescription {
     pub has_visibility_masks: bool,
     /// Whether bare hands are tracked (`XR_EXT_hand_tracking`).
     pub has_hand_tracking: bool,
+}
+
+impl RuntimeDescription {
+    /// Width and height of the left and the right eye's pictures that are scaled from what is recommended, pixels.
+    pub(crate) fn image_sizes(&self, scale: f64) -> [[u32; 2]; 2] {
+        std::array::from_fn(|eye| {
+            std::array::from_fn(|axis| {
+                let scaled = (scale * f64::from(self.eye_sizes[eye][axis])).round() as u32;
+                scaled.clamp(1, self.largest_eye_sizes[eye][axis].max(1))
+            })
+        })
+    }
 }
 
 impl Runtime {
@@ -163,6 +177,7 @@ fn describe(
         headset: properties.system_name,
         eye_sizes: [left, right]
             .map(|view| [view.recommended_image_rect_width, view.recommended_image_rect_height]),
+        largest_eye_sizes: [left, right].map(|view| [view.max_image_rect_width, view.max_image_rect_height]),
         tracks_position: properties.tracking_properties.position_tracking,
         has_depth_layers: extensions.khr_composition_layer_depth.is_some(),
         has_refresh_rates: extensions.fb_display_refresh_rate.is_some(),

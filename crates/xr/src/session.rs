@@ -20,8 +20,10 @@ use wheatstone_core::headset::{Hand, Side};
 const SETTLING_TIMEOUT: Duration = Duration::from_secs(120);
 
 /// What a session is to have.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SessionOptions {
+    /// Width and height of the eyes' pictures, as parts of what the runtime recommends; no more than it takes.
+    pub image_scale: f64,
     /// Width and height of the panel, pixels; none without it.
     pub panel_px: Option<[u32; 2]>,
     /// Whether depths are given along with pictures, where the runtime takes them. It then moves pictures about as the surfaces that they
@@ -31,6 +33,19 @@ pub struct SessionOptions {
     pub has_readable_images: bool,
     /// How often the display is to refresh, per second; none leaves it to the runtime.
     pub refresh_rate_hz: Option<f32>,
+}
+
+impl Default for SessionOptions {
+    /// Pictures as the runtime recommends, and nothing else.
+    fn default() -> Self {
+        Self {
+            image_scale: 1.0,
+            panel_px: None,
+            has_depth: false,
+            has_readable_images: false,
+            refresh_rate_hz: None,
+        }
+    }
 }
 
 /// Whether there are frames to make.
@@ -98,7 +113,7 @@ impl Session {
         let depth = Content::depth(&formats).filter(|_| wants_depth);
         let reading = if options.has_readable_images { Reading::Sampled } else { Reading::Never };
         let swapchain = |content, size| Swapchain::new(&handle, device, content, size, reading);
-        let [left, right] = runtime.description().eye_sizes.map(|size| {
+        let [left, right] = runtime.description().image_sizes(options.image_scale).map(|size| {
             let depth = depth.map(|depth| swapchain(depth, size)).transpose()?;
             Ok::<_, XrError>(EyeImages { color: swapchain(color, size)?, depth })
         });
@@ -243,7 +258,7 @@ impl Session {
 
     /// Width and height of the left and the right eye's pictures, pixels.
     pub fn eye_sizes(&self) -> [[u32; 2]; 2] {
-        self.runtime.description().eye_sizes
+        self.eye_images.each_ref().map(|images| images.color.size())
     }
 
     /// Now, on the clock of [`Tick::display_time_s`](wheatstone_core::headset::Tick); none if the runtime does not tell.

@@ -163,6 +163,11 @@ impl Swapchain {
         }))
     }
 
+    /// Width and height of its pictures, pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// The image that is being drawn to.
     fn ready(&self) -> Option<&wgpu::Texture> {
         if let Held::Ready(index) = self.held { self.images.get(index) } else { None }

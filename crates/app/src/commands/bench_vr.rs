@@ -73,6 +73,11 @@ pub(crate) struct VrBenchArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     refreshes: Option<u64>,
 
+    /// Width and height of the eyes' pictures, as parts of what the headset's software recommends [default: 1; on software Vulkan as
+    /// much as there is time for].
+    #[arg(long, value_name = "PART", value_parser = spec::within(0.1..=4.0), allow_negative_numbers = true)]
+    image_scale: Option<f64>,
+
     #[command(flatten)]
     layering: LayeringArgs,
 
@@ -172,8 +177,9 @@ impl VrBenchArgs {
                 let connected = Connected::connect()?;
                 let loaded = open(source, connected.gpu())?;
                 let (played, stand) = played(recording, &loaded.1);
+                let depth_layer = depth_layer(self.depth_layer);
                 let mut headset =
-                    Guided::new(OpenXr::begin(connected, depth_layer(self.depth_layer))?, played);
+                    Guided::new(OpenXr::begin(connected, depth_layer, self.image_scale)?, played);
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
         }

@@ -90,6 +90,11 @@ pub(crate) struct VrArgs {
     #[arg(long)]
     patient: bool,
 
+    /// Width and height of the eyes' pictures, as parts of what the headset's software recommends [default: 1; on software Vulkan as
+    /// much as there is time for].
+    #[arg(long, value_name = "PART", value_parser = spec::within(0.1..=4.0), allow_negative_numbers = true)]
+    image_scale: Option<f64>,
+
     #[command(flatten)]
     layering: LayeringArgs,
 
@@ -188,7 +193,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
                 company.mirror = mirror(&connected);
             }
             let control = if company.mirror.is_some() { Control::HandsAndWindow } else { Control::Hands };
-            let headset = OpenXr::begin(connected, depth_layer(args.depth_layer))?;
+            let headset = OpenXr::begin(connected, depth_layer(args.depth_layer), args.image_scale)?;
             company.interrupt.watch()?;
             match recording.map(Played::Recording) {
                 Some(played) => {

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use glam::DVec3;
 use wheatstone_core::budget::Quality;
 use wheatstone_core::headset::HiddenArea;
-use wheatstone_core::view::{Frustum, Projection, View};
+use wheatstone_core::view::{Frustum, PixelRect, Projection, View};
 use wheatstone_core::warp::{GridSettings, Overlap, VolumetricSettings, WarpError};
 use wheatstone_render::Gpu;
 use wheatstone_render::live::Front;
@@ -218,6 +218,13 @@ impl Eyes {
         }
         let mut eyes = self.pictures.iter().map(Canvas::view);
         Ok(eyes.next().map(|left| [left.clone(), eyes.next().unwrap_or(left).clone()]))
+    }
+
+    /// The pixels of an eye's picture outside of which it is empty, if it were of a size.
+    pub(crate) fn drawn(&self, eye: usize, size: [u32; 2]) -> PixelRect {
+        let canvas = self.pictures.get(eye).or(self.pictures.last());
+        let drawn = canvas.and_then(|canvas| Some(canvas.drawn()?.stretched(canvas.size(), size)));
+        drawn.unwrap_or(PixelRect { columns: 0..size[0], rows: 0..size[1] })
     }
 
     fn draw(&mut self, gpu: &Gpu, front: &Front, wanted: &Wanted) -> Result<(), Failure> {

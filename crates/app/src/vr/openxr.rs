@@ -19,6 +19,9 @@ const M_PER_PIXEL: f32 = 0.0004;
 /// How long a hand feels that it has taken hold of something, seconds, and how strongly.
 const PULSE: (f64, f32) = (0.02, 0.6);
 
+/// Pixels of an eye's picture that software Vulkan has time for.
+const MOST_PIXELS_ON_CPU: f64 = 640.0 * 720.0;
+
 /// A session of a runtime.
 pub(crate) struct OpenXr {
     session: Session,
@@ -49,10 +52,17 @@ impl Connected {
 }
 
 impl OpenXr {
-    /// Begins a session. From then on nothing else may give the device work from another thread.
-    pub(crate) fn begin(Connected(graphics): Connected, depth_layer: DepthLayer) -> Result<Self, Failure> {
+    /// Begins a session whose pictures are scaled from what the runtime recommends; by as much as the device has time for, if nothing
+    /// is asked for. From then on nothing else may give the device work from another thread.
+    pub(crate) fn begin(
+        Connected(graphics): Connected,
+        depth_layer: DepthLayer,
+        image_scale: Option<f64>,
+    ) -> Result<Self, Failure> {
+        let image_scale = image_scale.unwrap_or_else(|| affordable_scale(&graphics));
         let has_depth = depth_layer == DepthLayer::With;
-        let options = SessionOptions { panel_px: Some(panel::SIZE), has_depth, ..SessionOptions::default() };
+        let panel_px = Some(panel::SIZE);
+        let options = SessionOptions { image_scale, panel_px, has_depth, ..SessionOptions::default() };
         let session = Session::begin(&graphics, options)?;
         let runtime = graphics.runtime().description().name.clone();
         let mut told = Vec::new();
@@ -79,6 +89,17 @@ impl OpenXr {
             }
         }
         Ok(())
+    }
+}
+
+/// What is recommended, but for software Vulkan.
+fn affordable_scale(graphics: &Graphics) -> f64 {
+    let area = |[width, height]: [u32; 2]| f64::from(width) * f64::from(height);
+    let recommended = graphics.runtime().description().eye_sizes.map(area);
+    if graphics.gpu().description().is_software {
+        (MOST_PIXELS_ON_CPU / recommended[0].max(recommended[1])).sqrt().min(1.0)
+    } else {
+        1.0
     }
 }
 

@@ -283,7 +283,7 @@ impl Room {
         self.gpu.wait_for(submission)?;
         let took = begun.elapsed();
         if self.pictures.is_some() {
-            self.ladder.note(warp, took);
+            self.ladder.note(warp, took, tick.period_s);
             *self.report.warps.entry(warp.name()).or_default() += 1;
         }
         let since = self.tick.map_or(tick.period_s, |last| tick.display_time_s - last.display_time_s);
@@ -416,8 +416,12 @@ impl Room {
         });
         for (eye, image) in images.iter().enumerate() {
             let picture = self.pictures.as_ref().map(|pictures| &pictures[eye]);
-            let (depths, visible) = (depths.map(|depths| &depths[eye]), visible[eye]);
-            let scenery = Scenery { behind: &behind, picture, depths, visible, in_front: &in_front };
+            let depths = depths.map(|depths| &depths[eye]);
+            let size = image.color.texture().size();
+            let drawn = self.eyes.drawn(eye, [size.width, size.height]);
+            let visible: Vec<_> = visible[eye].iter().map(|rect| rect.within(&drawn)).collect();
+            let scenery =
+                Scenery { behind: &behind, picture, depths, visible: &visible, in_front: &in_front };
             self.stage.draw(&self.gpu, &mut encoder, image, &eyes[eye], background, &scenery);
         }
         if let (Some(checks), Some(pictures), Some(wanted), Some(front)) =

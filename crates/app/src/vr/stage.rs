@@ -260,7 +260,7 @@ impl Stage {
         let depth = self.depth.as_ref().filter(|_| scenery.depths.is_some());
         for pipeline in [picture, depth].into_iter().flatten() {
             pass.set_pipeline(pipeline);
-            for PixelRect { columns, rows } in scenery.visible {
+            for PixelRect { columns, rows } in scenery.visible.iter().filter(|rect| !rect.is_empty()) {
                 pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
                 pass.draw(0..3, 0..1);
             }

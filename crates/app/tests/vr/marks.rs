@@ -198,8 +198,11 @@ fn marks_come_out_on_the_display_on_the_side_of_each_eye() {
     remote.controller(Side::Left, &off).controller(Side::Right, &off).send();
     eyes.put(&mut remote);
     let mut vr = place.begin_vr("display", &["marks.json"]);
-    vr.pass(AT_REST);
+    vr.pass(3 * AT_REST);
     let screen = place.contact().screen();
+    for (i, p) in halves(&screen).iter().enumerate() {
+        p.save(format!("/tmp/half{i}.png")).unwrap();
+    }
     let report = vr.interrupt().json();
     eyes.check(&grid, &stand_of(&report), &halves(&screen), OFF_ON_DISPLAY_PX);
 }

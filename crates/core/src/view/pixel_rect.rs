@@ -47,6 +47,18 @@ impl PixelRect {
         Self { columns: both(&self.columns, &other.columns), rows: both(&self.rows, &other.rows) }
     }
 
+    /// The pixels of a picture of the second size that show anything of these of a picture of the first, when it is stretched to that
+    /// size and interpolated.
+    pub fn stretched(&self, from: [u32; 2], to: [u32; 2]) -> Self {
+        let range = |range: &Range<u32>, axis: usize| {
+            let scale = f64::from(to[axis]) / f64::from(from[axis]);
+            let begin = (scale * (f64::from(range.start) - 0.5)).floor().max(0.0) as u32;
+            let end = (scale * (f64::from(range.end) + 0.5)).ceil() as u32;
+            if range.is_empty() { 0..0 } else { begin..end.min(to[axis]) }
+        };
+        Self { columns: range(&self.columns, 0), rows: range(&self.rows, 1) }
+    }
+
     /// The pixels, of a picture of a size, about the convex hull of positions, in pixels from the top left; all of them if one
     /// is nowhere.
     pub(crate) fn of_positions(positions: impl Iterator<Item = Option<DVec2>>, size: [u32; 2]) -> Self {
@@ -173,6 +185,30 @@ mod tests {
                 prop_assert_eq!(has(&rect.within(&other)), has(&rect) && has(&other), "{} {}", x, y);
             }
         }
+    }
+
+    #[test]
+    fn a_stretched_rectangle_has_the_pixels_that_interpolate_some_of_its_own() {
+        let rect = PixelRect { columns: 3..5, rows: 0..2 };
+        for (from, to) in [([9, 7], [9, 7]), ([9, 7], [18, 21]), ([9, 7], [5, 6]), ([9, 7], [10, 8])] {
+            let stretched = rect.stretched(from, to);
+            for (x, y) in (0..to[1]).flat_map(|y| (0..to[0]).map(move |x| (x, y))) {
+                let meets = |at: u32, axis: usize, own: &Range<u32>| {
+                    let middle = (f64::from(at) + 0.5) * f64::from(from[axis]) / f64::from(to[axis]);
+                    own.clone().any(|pixel| (f64::from(pixel) + 0.5 - middle).abs() < 1.0)
+                };
+                if meets(x, 0, &rect.columns) && meets(y, 1, &rect.rows) {
+                    assert!(
+                        stretched.columns.contains(&x) && stretched.rows.contains(&y),
+                        "{x} {y} {stretched:?}"
+                    );
+                }
+            }
+            assert!(stretched.columns.end <= to[0] && stretched.rows.end <= to[1]);
+        }
+        assert_eq!(rect.stretched([9, 7], [18, 21]), PixelRect { columns: 5..11, rows: 0..8 });
+        let nothing = PixelRect { columns: 4..4, rows: 0..2 };
+        assert!(nothing.stretched([9, 7], [18, 21]).is_empty());
     }
 
     #[test]

@@ -30,6 +30,11 @@ impl Canvas {
         &self.view
     }
 
+    /// Pixels outside of which it is transparent once all that is encoded is done; unknown before the first warp.
+    pub fn drawn(&self) -> Option<&PixelRect> {
+        self.drawn.as_ref()
+    }
+
     /// Width and height, pixels.
     pub fn size(&self) -> [u32; 2] {
         let size = self.view.texture().size();

@@ -101,6 +101,7 @@ fn vulkans_validation_layer_has_nothing_to_say() {
 /// All that a session can have.
 fn everything() -> SessionOptions {
     SessionOptions {
+        image_scale: 0.5,
         panel_px: Some([64, 32]),
         has_depth: true,
         has_readable_images: true,
