@@ -10,6 +10,14 @@ const SHARE_IN_DOUBT: f64 = 0.5;
 /// Share of the cells of such a view that its first batch holds at most: where nothing was to be seen, all of them seem to fit.
 const CELLS_IN_DOUBT: f64 = 1.0 / 16.0;
 
+/// Share of a refresh that is kept in reserve at most. What takes a multiple of its time now and then, however few cells there are, is
+/// not the cells' doing but that of another program on the device, for which no reserve is enough.
+const MOST_RESERVED: f64 = 0.5;
+
+/// How many times as long as expected a cell may seem to take. What takes longer has most likely been interrupted, as by a compositor; if
+/// not, the cells about it say so as well, and the next ones are expected to take longer.
+const MOST_SURPRISE: f64 = 4.0;
+
 /// Casts a view after the other, a batch of cells per refresh (VR Alg. 4), with a front picture that is complete and a back
 /// picture under way.
 ///
@@ -142,16 +150,27 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
         for &s in seconds {
             BudgetError::unless_duration(s)?;
         }
-        let timed = batch.cells.iter().zip(seconds);
+        let uninterrupted = |(&cell, &s): (&usize, &f64)| (cell, self.uninterrupted_s(cell, s));
+        let timed: Vec<(usize, f64)> = batch.cells.iter().zip(seconds).map(uninterrupted).collect();
         match self.views_begun.checked_sub(batch.view) {
-            Some(1) => timed.for_each(|(&cell, &s)| self.costs.record(cell, s)),
-            Some(2) => timed.for_each(|(&cell, &s)| self.costs.record_late(cell, s)),
+            Some(1) => timed.iter().for_each(|&(cell, s)| self.costs.record(cell, s)),
+            Some(2) => timed.iter().for_each(|&(cell, s)| self.costs.record_late(cell, s)),
             _ => return Ok(()),
         }
         if self.costs.is_known() {
             self.margin.learn(batch.expected_s, batch.variance_s2, seconds.iter().sum());
         }
         Ok(())
+    }
+
+    /// What a cell that seems to have taken some seconds has taken most likely, where there is reason to expect anything of it.
+    fn uninterrupted_s(&self, cell: usize, seconds: f64) -> f64 {
+        let is_doubtful = self.back.as_ref().is_some_and(|back| back.is_doubtful);
+        let is_known = self.costs.is_known() && !is_doubtful;
+        let expected = self.predictor.predict(&self.costs, cell).filter(|_| is_known);
+        let most_s = expected
+            .map_or(f64::INFINITY, |expected| MOST_SURPRISE * expected.seconds.max(self.costs.mean_last_s()));
+        seconds.min(most_s)
     }
 
     fn begin(&mut self) {
@@ -184,7 +203,8 @@ impl<C: Clone + PartialEq> CastSchedule<C> {
         while let Some(&cell) = back.order.get(back.next) {
             let unknown = Expectation { seconds: f64::INFINITY, variance_s2: 0.0 };
             let cell = self.predictor.predict(&self.costs, cell).unwrap_or(unknown);
-            let reserved_s = deviations * (variance_s2 + cell.variance_s2).sqrt();
+            let wanted_s = deviations * (variance_s2 + cell.variance_s2).sqrt();
+            let reserved_s = wanted_s.min(MOST_RESERVED * available_s);
             let fits = expected_s + cell.seconds + reserved_s <= available_s;
             let count = back.next - first;
             if (!fits && count >= at_least) || count >= most {

@@ -77,6 +77,21 @@ fn so_it_is_with_what_cells_of_a_turning_phantom_have_taken() {
 }
 
 #[test]
+fn a_program_that_takes_the_device_away_does_not_starve_casting() {
+    let balls = Balls { speed: 0.5 };
+    let grid = CellGrid::new([1024, 1024], 40).unwrap();
+    let workload = || Workload::new(grid, 10.0 * PERIOD_S, &balls, 1);
+    let oracle = simulate_oracle(&mut workload(), REFRESHES);
+    for (share, periods) in [(0.05, 1.0), (0.2, 1.0), (0.2, 3.0)] {
+        let mut interrupted = workload().interrupted(share, periods * PERIOD_S);
+        let outcome = simulate(&mut interrupted, Predictor::Corrected, 0.0, 1, REFRESHES);
+        // No reserve is enough for what is interrupted, and the rest is in time.
+        assert!(outcome.missed_share() <= share + 0.03, "{share} {periods}: {outcome:?}");
+        assert!(3 * outcome.views > oracle.views, "{share} {periods}: {} of {}", outcome.views, oracle.views);
+    }
+}
+
+#[test]
 fn a_fixed_bias_casts_less_than_a_learnt_reserve() {
     let balls = Balls { speed: 0.5 };
     let outcomes = |predictor| HARDWARE.with_oracle(predictor, 10.0, &balls, 0);

@@ -58,7 +58,7 @@ pub(crate) fn simulate(
             costs_s = workload.costs_s(refresh as f64 * PERIOD_S);
         }
         let batch = schedule.plan(AVAILABLE_S).unwrap();
-        let taken_s: Vec<f64> = batch.cells().iter().map(|&cell| costs_s[cell] * workload.noise()).collect();
+        let taken_s = workload.batch_s(batch.cells().iter().map(|&cell| costs_s[cell]));
         outcome.count(taken_s.iter().sum(), batch.completes_view());
         waiting.push_back((batch, taken_s));
         if waiting.len() > latency {

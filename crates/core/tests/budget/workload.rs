@@ -17,12 +17,15 @@ pub(crate) struct Workload<'m> {
     model: &'m dyn Model,
     seconds_per_cost: f64,
     random: u64,
+    /// In what share of batches, and for how long, seconds.
+    interruptions: (f64, f64),
 }
 
 impl<'m> Workload<'m> {
     /// The whole picture costs `view_s` seconds at time 0, before noise.
     pub(crate) fn new(grid: CellGrid, view_s: f64, model: &'m dyn Model, seed: u64) -> Self {
-        let mut workload = Self { grid, model, seconds_per_cost: 1.0, random: seed };
+        let mut workload =
+            Self { grid, model, seconds_per_cost: 1.0, random: seed, interruptions: (0.0, 0.0) };
         workload.seconds_per_cost = view_s / workload.costs_s(0.0).iter().sum::<f64>();
         workload
     }
@@ -37,15 +40,35 @@ impl<'m> Workload<'m> {
         (0..self.grid.cells()).map(cost_s).collect()
     }
 
+    /// The same on a device that another program takes away during a share of batches, for so long.
+    pub(crate) fn interrupted(self, share: f64, seconds: f64) -> Self {
+        Self { interruptions: (share, seconds), ..self }
+    }
+
     /// A factor about 1, different each time.
     pub(crate) fn noise(&mut self) -> f64 {
+        1.0 + NOISE * (2.0 * self.unit() - 1.0)
+    }
+
+    /// What cells take one after the other that would take so long, seconds.
+    pub(crate) fn batch_s(&mut self, costs_s: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut batch_s: Vec<f64> = costs_s.map(|cost_s| cost_s * self.noise()).collect();
+        let (share, seconds) = self.interruptions;
+        if share > 0.0 && self.unit() < share {
+            let when = (self.unit() * batch_s.len() as f64) as usize;
+            batch_s[when] += seconds;
+        }
+        batch_s
+    }
+
+    /// From 0 to 1, different each time.
+    fn unit(&mut self) -> f64 {
         // SplitMix64.
         self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.random;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        let unit = ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
-        1.0 + NOISE * (2.0 * unit - 1.0)
+        ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 
