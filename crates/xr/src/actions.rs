@@ -134,11 +134,6 @@ impl Actions {
             .called("xrApplyHapticFeedback")
     }
 
-    /// The space that goes along with a fist.
-    pub(crate) fn grip_space(&self, side: Side) -> &xr::Space {
-        &self.sides[side.index()].grip
-    }
-
     /// Which kinds of controllers the hands hold: paths of interaction profiles.
     pub(crate) fn controllers(
         &self,

@@ -6,24 +6,11 @@ use crate::session::Session;
 use crate::space::pose_to_xr;
 use openxr as xr;
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::Side;
-
-/// What a panel goes along with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
-    /// It stands in the world.
-    World,
-    /// It is fixed to a controller, by its grip; the runtime moves it along up to the moment it is shown. It cannot be seen while the
-    /// hand holds no controller.
-    Grip(Side),
-}
 
 /// Where the panel is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Panel {
-    /// The space of the pose.
-    pub anchor: Anchor,
-    /// Of its middle; it faces +Z.
+    /// Of its middle in the room; it faces +Z.
     pub pose: Pose,
     /// Width and height, metres.
     pub size_m: [f32; 2],
@@ -42,7 +29,7 @@ impl Session {
         views: Option<[xr::View; 2]>,
         panel: Option<&Panel>,
     ) -> Result<(), XrError> {
-        let Self { stream, eye_images, panel_image, world, actions, blend_mode, .. } = self;
+        let Self { stream, eye_images, panel_image, world, blend_mode, .. } = self;
         let depths =
             eye_images.each_ref().map(|eye| eye.depth.as_ref().map(|depth| depth_info(depth.sub_image())));
         let views = views.map(|views| {
@@ -63,13 +50,9 @@ impl Session {
         let panel_image = panel_image.as_ref().filter(|image| image.has_picture());
         let panel = panel.zip(panel_image).map(|(panel, image)| {
             let [width, height] = panel.size_m;
-            let space = match panel.anchor {
-                Anchor::World => &world.space,
-                Anchor::Grip(side) => actions.grip_space(side),
-            };
             xr::CompositionLayerQuad::new()
                 .layer_flags(TRANSLUCENT)
-                .space(space)
+                .space(&world.space)
                 .eye_visibility(xr::EyeVisibility::BOTH)
                 .pose(pose_to_xr(&panel.pose))
                 .size(xr::Extent2Df { width, height })

@@ -62,7 +62,7 @@ pub use device::Graphics;
 pub use error::XrError;
 pub use event::SessionEvent;
 pub use frame::{EyeImage, Frame};
-pub use layers::{Anchor, Panel};
+pub use layers::Panel;
 pub use runtime::{Runtime, RuntimeDescription};
 pub use session::{Phase, Session, SessionOptions};
 pub use space::Floor;

@@ -7,10 +7,10 @@ use glam::{DQuat, DVec3};
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::{HiddenArea, Side, Tick};
+use wheatstone_core::headset::{Hand, HiddenArea, Side, Tick};
 use wheatstone_render::Gpu;
 use wheatstone_xr::{
-    Anchor, EndReason, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
+    EndReason, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
 };
 
 /// Of the panel in the room.
@@ -148,7 +148,8 @@ impl Headset for OpenXr {
             Phase::Running => {
                 let mut frame = self.session.wait()?;
                 draw(&mut Drawn(&mut frame))?;
-                frame.end(Some(&panel_pose()))?;
+                let panel = panel_on(&frame.tick().hands);
+                frame.end(panel.as_ref())?;
                 Ok(Moment::Shown)
             }
         }
@@ -167,16 +168,12 @@ impl Headset for OpenXr {
     }
 }
 
-/// Above the left controller, tilted towards the eyes.
-fn panel_pose() -> Panel {
-    Panel {
-        anchor: Anchor::Grip(Side::Left),
-        pose: Pose {
-            position_m: DVec3::new(0.0, 0.08, -0.06),
-            orientation: DQuat::from_rotation_x(-FRAC_PI_4),
-        },
-        size_m: panel::SIZE.map(|side| side as f32 * M_PER_PIXEL),
-    }
+/// Above the left hand, tilted towards the eyes; nowhere without that hand.
+fn panel_on(hands: &[Hand; 2]) -> Option<Panel> {
+    let above =
+        Pose { position_m: DVec3::new(0.0, 0.08, -0.06), orientation: DQuat::from_rotation_x(-FRAC_PI_4) };
+    let grip = hands[Side::Left.index()].grip?;
+    Some(Panel { pose: grip.of_own(&above), size_m: panel::SIZE.map(|side| side as f32 * M_PER_PIXEL) })
 }
 
 /// An event in words, if it is worth any.

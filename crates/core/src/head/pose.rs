@@ -29,6 +29,14 @@ impl Pose {
         DAffine3::from_rotation_translation(self.orientation, self.position_m)
     }
 
+    /// The pose in the world of what has a pose in this one's own space.
+    pub fn of_own(&self, own: &Self) -> Self {
+        Self {
+            position_m: self.position_m + self.orientation * own.position_m,
+            orientation: self.orientation * own.orientation,
+        }
+    }
+
     /// Whether all coordinates are finite and the orientation has unit length.
     pub fn is_valid(&self) -> bool {
         self.position_m.is_finite() && self.orientation.is_finite() && self.orientation.is_normalized()
@@ -87,6 +95,19 @@ mod tests {
         {
             assert!((at(a).angle_to_rad(&at(b)) - between).abs() < 1e-12, "{a} {b}");
         }
+    }
+
+    #[test]
+    fn what_goes_along_with_a_pose_is_where_its_space_puts_it() {
+        let hand = Pose {
+            position_m: DVec3::new(0.2, 1.1, -0.4),
+            orientation: DQuat::from_rotation_y(0.7) * DQuat::from_rotation_x(-0.3),
+        };
+        let own =
+            Pose { position_m: DVec3::new(0.0, 0.08, -0.06), orientation: DQuat::from_rotation_x(-0.8) };
+        let held = hand.of_own(&own).world_from_own();
+        let through_both = hand.world_from_own() * own.world_from_own();
+        assert!(held.abs_diff_eq(through_both, 1e-12), "{held} {through_both}");
     }
 
     #[test]

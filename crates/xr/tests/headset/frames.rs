@@ -4,8 +4,7 @@ use crate::inside::{Surroundings, inside, inside_with};
 use crate::support::{begin, clear, fill, until, until_running};
 use glam::{DQuat, DVec3};
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::Side;
-use wheatstone_xr::{Anchor, Graphics, Panel, Session, SessionOptions, XrError};
+use wheatstone_xr::{Graphics, Panel, Session, SessionOptions, XrError};
 
 /// Exact in eight bits.
 fn gray(eighth_bits: u8) -> wgpu::Color {
@@ -98,6 +97,9 @@ fn vulkans_validation_layer_has_nothing_to_say() {
     );
 }
 
+/// Some of a session that has all that it can have.
+const FRAMES_OF_EVERYTHING: usize = 4;
+
 /// All that a session can have.
 fn everything() -> SessionOptions {
     SessionOptions {
@@ -109,13 +111,12 @@ fn everything() -> SessionOptions {
     }
 }
 
-/// Frames with pictures, depths and a panel that is drawn once, beside the head and on either hand; all are read back.
+/// Frames with pictures, depths and a panel that is drawn once, in front of the head; all are read back.
 fn show_everything(graphics: &Graphics, session: &mut Session) {
     let gpu = graphics.gpu();
     let pose = Pose { position_m: DVec3::new(0.0, 1.2, -0.5), orientation: DQuat::IDENTITY };
-    let anchors = [Anchor::World, Anchor::Grip(Side::Left), Anchor::Grip(Side::Right), Anchor::World];
     let mut shown = 0;
-    while shown < anchors.len() {
+    while shown < FRAMES_OF_EVERYTHING {
         until_running(session);
         let mut frame = session.wait().unwrap();
         if frame.tick().eyes.is_some() {
@@ -142,8 +143,7 @@ fn show_everything(graphics: &Graphics, session: &mut Session) {
             }
             shown += 1;
         }
-        let anchor = anchors[shown.min(anchors.len() - 1)];
-        frame.end(Some(&Panel { anchor, pose, size_m: [0.2, 0.1] })).unwrap();
+        frame.end(Some(&Panel { pose, size_m: [0.2, 0.1] })).unwrap();
     }
     gpu.check().unwrap();
 }

@@ -5,7 +5,7 @@ use crate::monado::Compositor;
 use crate::support::{begin, clear, until_running};
 use glam::{DQuat, DVec3};
 use wheatstone_core::head::Pose;
-use wheatstone_xr::{Anchor, Panel, SessionOptions};
+use wheatstone_xr::{Panel, SessionOptions};
 
 /// Frames after which a picture counts as not shown.
 const PATIENCE: usize = 200;
@@ -121,7 +121,7 @@ fn colours_come_out_on_the_display_where_and_as_they_are_written() {
                     gpu.check().unwrap();
                     let ahead = eye.pose.orientation * DVec3::new(0.0, 0.0, -1.0);
                     let pose = Pose { position_m: eye.pose.position_m + ahead, orientation: DQuat::IDENTITY };
-                    panel = has_panel.then_some(Panel { anchor: Anchor::World, pose, size_m: [0.3, 0.3] });
+                    panel = has_panel.then_some(Panel { pose, size_m: [0.3, 0.3] });
                 }
                 frame.end(panel.as_ref()).unwrap();
                 let screen = monado.screen();
