@@ -1,7 +1,8 @@
 //! `bench vr`: how well refreshes of a headset are kept, and how far what they show is from what they should.
 
 use super::vr::{
-    CheckArgs, EYE, HeadsetName, checked_transfer, clock, depth_layer, layers, open, played, read_recording,
+    CHECK_EVERY, CheckArgs, EYE, HeadsetName, check_readable, checked_transfer, clock, depth_layer, layers,
+    open, played, read_recording,
 };
 use crate::failure::Failure;
 use crate::layering::LayeringArgs;
@@ -19,9 +20,6 @@ use wheatstone_core::head::Display;
 use wheatstone_core::headset::Scale;
 use wheatstone_core::scene::Shading;
 use wheatstone_render::Gpu;
-
-/// One of so many refreshes is compared.
-const CHECK_EVERY: u64 = 20;
 
 /// Refreshes that are kept by a headset, while a head sways and hands take hold of the volume.
 ///
@@ -174,6 +172,7 @@ impl VrBenchArgs {
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
             HeadsetName::Openxr => {
+                check_readable(Some(volume))?;
                 let connected = Connected::connect()?;
                 let loaded = open(source, connected.gpu())?;
                 let (played, stand) = played(recording, &loaded.1);

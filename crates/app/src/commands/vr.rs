@@ -30,6 +30,9 @@ use wheatstone_render::Gpu;
 /// Width and height of the mirror window, points.
 const MIRROR: [u32; 2] = [960, 640];
 
+/// One of so many refreshes is compared where nothing else is asked for.
+pub(super) const CHECK_EVERY: u64 = 20;
+
 /// Width and height of each eye's picture without a headset, pixels.
 pub(super) const EYE: &str = "640x720";
 
@@ -122,13 +125,13 @@ pub(crate) struct VrArgs {
 /// When what is shown is compared with direct renders from where the eyes were, after all is over.
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {
-    /// Compare what is shown every so many refreshes [default: vr: never; bench vr: 20].
+    /// Compare what is shown every so many refreshes [default: vr: never, or 20 with --check-pictures; bench vr: 20].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     check_every: Option<u64>,
 
     /// Compare at most so many refreshes.
-    #[arg(long, value_name = "N", default_value_t = 20)]
-    checks: usize,
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    checks: u16,
 
     /// Write what each eye was shown of the volume at refreshes that are compared, over black, to a folder.
     #[arg(long, value_name = "DIR")]
@@ -138,8 +141,9 @@ pub(super) struct CheckArgs {
 impl CheckArgs {
     /// As asked for, or else one refresh of so many.
     pub(super) fn checking(&self, every: Option<u64>) -> Option<Checking> {
-        let every = self.check_every.or(every)?;
-        Some(Checking { every, most: self.checks, pictures: self.check_pictures.clone() })
+        let for_pictures = self.check_pictures.as_ref().map(|_| CHECK_EVERY);
+        let every = self.check_every.or(every).or(for_pictures)?;
+        Some(Checking { every, most: self.checks.into(), pictures: self.check_pictures.clone() })
     }
 }
 
@@ -174,7 +178,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         checks: args.check.checking(None),
         refreshes: args.refreshes,
     };
-    let report = match args.headset {
+    let shown = match args.headset {
         HeadsetName::None => {
             let gpu = Arc::new(Gpu::open_best()?);
             let loaded = open(source, &gpu)?;
@@ -184,9 +188,10 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
             let mut headset =
                 Replay::new(gpu, played, display, clock(args.patient), size, depth_layer(args.depth_layer))?;
             company.interrupt.watch()?;
-            show(&mut headset, opening(loaded, stand, Control::Hands), &mut company)?
+            show(&mut headset, opening(loaded, stand, Control::Hands), &mut company)
         }
         HeadsetName::Openxr => {
+            check_readable(args.file.as_deref())?;
             let connected = Connected::connect()?;
             let loaded = open(source, connected.gpu())?;
             if !args.no_mirror {
@@ -197,15 +202,16 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
             company.interrupt.watch()?;
             match recording.map(Played::Recording) {
                 Some(played) => {
-                    show(&mut Guided::new(headset, played), opening(loaded, None, control), &mut company)?
+                    show(&mut Guided::new(headset, played), opening(loaded, None, control), &mut company)
                 }
-                None => show(&mut { headset }, opening(loaded, None, control), &mut company)?,
+                None => show(&mut { headset }, opening(loaded, None, control), &mut company),
             }
         }
     };
-    if let Some(record) = company.record {
-        record.finish()?;
-    }
+    // However it ended, what was recorded until then is kept.
+    let recorded = company.record.map_or(Ok(()), Record::finish);
+    let report = shown?;
+    recorded?;
     if args.json {
         print_json(&report.to_json())?;
     } else {
@@ -263,6 +269,13 @@ pub(super) fn played(
 /// When refreshes come without a headset.
 pub(super) fn clock(is_patient: bool) -> Clock {
     if is_patient { Clock::Patient } else { Clock::Real }
+}
+
+/// A file that is not there is told before a runtime that is not.
+pub(super) fn check_readable(path: Option<&Path>) -> Result<(), Failure> {
+    let Some(path) = path else { return Ok(()) };
+    let opened = File::open(path).with_context(|| format!("{}", path.display()));
+    opened.map(drop).map_err(Failure::Input)
 }
 
 pub(super) fn read_recording(path: &Path) -> Result<Recording, Failure> {

@@ -12,13 +12,16 @@ const UNSEEN_PX: f64 = 0.5;
 /// From which depth on both eyes see all that is cast for one in their middle, metres.
 const NEAREST_M: f64 = 0.25;
 
+/// How many times as wide or high as an eye's picture one for both may be; those of eyes further apart are cast one by one.
+const MOST_WIDENING: u32 = 4;
+
 /// The views of the eyes, left one first, in the upright space of a volume that stands somewhere.
 pub(crate) fn upright_views(eyes: &[Eye; 2], stand: &Stand, sizes: [[u32; 2]; 2]) -> [View; 2] {
     [0, 1].map(|eye: usize| upright_eye(&eyes[eye], stand).view(sizes[eye]))
 }
 
 /// What is cast for the eyes, in the upright space of a volume that stands somewhere, at no fewer pixels per angle than theirs: a view
-/// for each, or one in the middle for both, if that is asked for and image planes are parallel.
+/// for each, or one in the middle for both, if that is asked for, image planes are parallel, and it is not many times as large as theirs.
 pub(crate) fn cast_views(
     method: EyeMethod,
     eyes: &[Eye; 2],
@@ -29,11 +32,10 @@ pub(crate) fn cast_views(
         EyeMethod::OneCast => Eye::between(eyes, NEAREST_M),
         EyeMethod::TwoCasts => None,
     };
-    match middle {
-        Some(middle) => {
-            let size = size_as_fine(&middle.frustum, eyes, sizes);
-            (EyeMethod::OneCast, vec![upright_eye(&middle, stand).view(size)])
-        }
+    let sized = middle.map(|middle| (middle, size_as_fine(&middle.frustum, eyes, sizes)));
+    let [most, _] = largest(sizes).map(|size| size.map(|side| MOST_WIDENING.saturating_mul(side)));
+    match sized.filter(|(_, size)| size[0] <= most[0] && size[1] <= most[1]) {
+        Some((middle, size)) => (EyeMethod::OneCast, vec![upright_eye(&middle, stand).view(size)]),
         None => (EyeMethod::TwoCasts, upright_views(eyes, stand, largest(sizes)).to_vec()),
     }
 }

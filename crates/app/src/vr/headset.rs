@@ -25,6 +25,9 @@ pub(crate) trait Headset {
     /// What lenses hide of the left and the right eye's pictures.
     fn hidden_areas(&self) -> &[HiddenArea; 2];
 
+    /// The floor's height in the world, metres, where it is known.
+    fn floor_y_m(&self) -> Option<f64>;
+
     /// Waits for the next refresh, lets its pictures be drawn, and shows them. An error of what draws comes back as it is.
     fn refresh(
         &mut self,

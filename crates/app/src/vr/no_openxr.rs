@@ -31,7 +31,11 @@ impl Connected {
 }
 
 impl OpenXr {
-    pub(crate) fn begin(Connected(nothing): Connected, _: DepthLayer) -> Result<Self, Failure> {
+    pub(crate) fn begin(
+        Connected(nothing): Connected,
+        _: DepthLayer,
+        _: Option<f64>,
+    ) -> Result<Self, Failure> {
         match nothing {}
     }
 }
@@ -58,6 +62,10 @@ impl Headset for OpenXr {
     }
 
     fn hidden_areas(&self) -> &[HiddenArea; 2] {
+        match self.0 {}
+    }
+
+    fn floor_y_m(&self) -> Option<f64> {
         match self.0 {}
     }
 

@@ -10,7 +10,7 @@ use wheatstone_core::head::Pose;
 use wheatstone_core::headset::{Hand, HiddenArea, Side, Tick};
 use wheatstone_render::Gpu;
 use wheatstone_xr::{
-    EndReason, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
+    EndReason, Floor, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
 };
 
 /// Of the panel in the room.
@@ -131,6 +131,13 @@ impl Headset for OpenXr {
 
     fn hidden_areas(&self) -> &[HiddenArea; 2] {
         &self.hidden
+    }
+
+    fn floor_y_m(&self) -> Option<f64> {
+        match self.session.floor() {
+            Floor::Stage | Floor::Local => Some(0.0),
+            Floor::Unknown => None,
+        }
     }
 
     fn refresh(

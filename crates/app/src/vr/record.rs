@@ -15,6 +15,7 @@ pub(crate) struct Record {
     file: NamedTempFile,
     recorder: Recorder<BufWriter<std::fs::File>>,
     last_s: Option<f64>,
+    has_left_out: bool,
 }
 
 impl Record {
@@ -29,13 +30,26 @@ impl Record {
         };
         let (file, writer) =
             begun().with_context(|| format!("cannot write {}", path.display())).map_err(Failure::Input)?;
-        Ok(Self { path: path.to_owned(), file, recorder: Recorder::new(writer), last_s: None })
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            recorder: Recorder::new(writer),
+            last_s: None,
+            has_left_out: false,
+        })
     }
 
-    /// Ends: what there is takes the file's name.
+    /// Ends: what there is takes the file's name; where there is nothing, there is no file.
     pub(crate) fn finish(self) -> Result<(), Failure> {
         let Self { path, file, recorder, .. } = self;
-        recorder.finish().map_err(|error| failed(&path, error))?;
+        match recorder.finish() {
+            Ok(()) => {}
+            Err(RecordingError::Empty) => {
+                eprintln!("nothing to record: {} is not written", path.display());
+                return Ok(());
+            }
+            Err(error) => return Err(failed(&path, error)),
+        }
         let kept = file.persist(&path).map(drop);
         Ok(kept.with_context(|| format!("cannot write {}", path.display()))?)
     }
@@ -49,7 +63,15 @@ impl Beside for Record {
             return Ok(());
         };
         self.last_s = Some(tick.display_time_s);
-        self.recorder.record(tick).map_err(|error| failed(&self.path, error))
+        match self.recorder.record(tick) {
+            Err(error @ RecordingError::Tick { .. }) => {
+                if !std::mem::replace(&mut self.has_left_out, true) {
+                    eprintln!("left out of {}: {error}", self.path.display());
+                }
+                Ok(())
+            }
+            recorded => recorded.map_err(|error| failed(&self.path, error)),
+        }
     }
 
     fn has_quit(&self) -> bool {

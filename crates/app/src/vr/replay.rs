@@ -109,6 +109,10 @@ impl Headset for Replay {
         &self.hidden
     }
 
+    fn floor_y_m(&self) -> Option<f64> {
+        Some(0.0)
+    }
+
     fn refresh(
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
@@ -121,7 +125,7 @@ impl Headset for Replay {
         // What is drawn from now on is shown at the next refresh that is still to come.
         let now_s = begun.elapsed().as_secs_f64();
         let refresh = match self.clock {
-            Clock::Real => self.next.max((now_s / period_s).floor() as u64),
+            Clock::Real => self.next.max((now_s / period_s).ceil() as u64),
             Clock::Patient => self.next,
         };
         self.next = refresh + 1;
@@ -187,6 +191,10 @@ impl<H: Headset> Headset for Guided<H> {
 
     fn hidden_areas(&self) -> &[HiddenArea; 2] {
         self.headset.hidden_areas()
+    }
+
+    fn floor_y_m(&self) -> Option<f64> {
+        self.headset.floor_y_m()
     }
 
     fn refresh(

@@ -19,6 +19,8 @@ pub(crate) struct Report {
     pub(crate) late: Late,
     /// What was done before the first refresh.
     pub(crate) warm_up: Duration,
+    /// With pictures, and without where the head was not tracked.
+    pub(crate) refreshes: u64,
     pub(crate) draws: Vec<Duration>,
     /// Refreshes by the warp that showed them.
     pub(crate) warps: BTreeMap<&'static str, u32>,
@@ -64,7 +66,7 @@ impl Report {
             "depth_layer": self.has_depth_layer,
             "volume": self.volume,
             "period_ms": 1e3 * self.period_s,
-            "refreshes": self.draws.len(),
+            "refreshes": self.refreshes,
             "shown": self.late.total().shown,
             "dropped": self.late.total().dropped,
             "pictures": self.pictures,
@@ -102,10 +104,10 @@ impl Report {
     pub(crate) fn to_lines(&self) -> String {
         let late = self.late.total();
         let mut lines = vec![
-            format!("{} on {}: {} of {}", self.headset, self.device, self.volume, self.ended),
+            format!("{} on {}, {}: {}", self.headset, self.device, self.volume, self.ended),
             format!(
                 "{} refreshes of {:.1} ms; after the first second {} shown, {} dropped; {} pictures cast",
-                self.draws.len(),
+                self.refreshes,
                 1e3 * self.period_s,
                 late.shown,
                 late.dropped,

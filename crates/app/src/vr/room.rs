@@ -34,6 +34,9 @@ const NAP: Duration = Duration::from_millis(10);
 /// Part of a refresh that is kept free, for what the runtime does with pictures.
 const KEPT_FREE: f64 = 0.15;
 
+/// Part of a refresh that casting gets even where drawing takes too long: whatever is shown would else stay as it is.
+const LEAST_CAST: f64 = 0.1;
+
 /// Of the floor and the horizon.
 const FLOOR_RGB: [f32; 3] = [0.35, 0.4, 0.45];
 
@@ -144,7 +147,7 @@ pub(crate) struct Room {
     tick: Option<Tick>,
     pub(super) pictures: Option<[wgpu::TextureView; 2]>,
     timings: Timings,
-    told: Vec<String>,
+    floor_y_m: Option<f64>,
     report: Report,
 }
 
@@ -179,7 +182,7 @@ impl Room {
             tick: None,
             pictures: None,
             timings: Timings::default(),
-            told: Vec::new(),
+            floor_y_m: headset.floor_y_m(),
             report,
             gpu,
         };
@@ -206,7 +209,7 @@ impl Room {
     }
 
     fn wants_to_end(&self) -> bool {
-        let is_over = self.refreshes.is_some_and(|most| self.report.draws.len() as u64 >= most);
+        let is_over = self.refreshes.is_some_and(|most| self.report.refreshes >= most);
         is_over || self.session.has_quit()
     }
 
@@ -224,16 +227,24 @@ impl Room {
             grabbed = self.draw(sight, sizes)?;
             Ok(())
         })?;
-        self.told.extend(headset.told());
+        for what in headset.told() {
+            self.tell(&what);
+        }
         for side in Side::BOTH.into_iter().filter(|side| grabbed[side.index()]) {
             headset.pulse(side)?;
         }
         match (&moment, begun, self.tick) {
             (Moment::Shown, Some(begun), Some(tick)) => {
-                self.report.late.submit(tick.display_time_s, tick.period_s);
+                self.report.refreshes += 1;
+                if tick.eyes.is_some() {
+                    self.report.late.submit(tick.display_time_s, tick.period_s);
+                } else {
+                    self.report.late.pause();
+                }
                 self.report.period_s = tick.period_s;
                 let left_s = (1.0 - KEPT_FREE) * tick.period_s - begun.elapsed().as_secs_f64();
-                self.casting.refresh(&self.gpu, Duration::from_secs_f64(left_s.max(0.0)))?;
+                let cast_s = left_s.max(LEAST_CAST * tick.period_s);
+                self.casting.refresh(&self.gpu, Duration::from_secs_f64(cast_s))?;
             }
             _ => self.report.late.pause(),
         }
@@ -384,7 +395,7 @@ impl Room {
         let (used, views) = cast_views(method, eyes, stand, sizes);
         if used != method && !self.report.is_canted {
             self.report.is_canted = true;
-            self.tell("the displays are canted: each eye's picture is cast");
+            self.tell("the displays are canted or far apart: each eye's picture is cast");
         }
         self.report.eye_method = used;
         views
@@ -393,7 +404,7 @@ impl Room {
     /// Tells people something, in the panel and beside the headset.
     fn tell(&mut self, what: &str) {
         eprintln!("{what}");
-        self.told.push(what.to_owned());
+        self.session.notes.done(what);
     }
 
     pub(super) fn draw_eyes(
@@ -406,7 +417,7 @@ impl Room {
     ) -> Result<wgpu::SubmissionIndex, Failure> {
         let mut encoder =
             self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let behind = if self.has_floor { surroundings(tick) } else { Vec::new() };
+        let behind = if self.has_floor { surroundings(tick, self.floor_y_m) } else { Vec::new() };
         let in_front = self.hands.as_ref().map_or_else(Vec::new, |hands| hands.lines(tick));
         let background = self.session.state().look.background;
         let [left, right] = &mut self.lenses;
@@ -458,7 +469,7 @@ impl Room {
             look: &look,
             values: self.report.values_under_hands,
             refreshes: &refreshes,
-            notes: if notes.is_empty() { &self.told } else { &notes },
+            notes: &notes,
             timings: &self.timings,
             period_ms: 1e3 * period_s as f32,
         };
@@ -480,10 +491,11 @@ impl Room {
     }
 }
 
-/// Floor and horizon about the head.
-fn surroundings(tick: &Tick) -> Vec<ColoredLine> {
+/// The floor, where it is known, and the horizon about the head.
+fn surroundings(tick: &Tick, floor_y_m: Option<f64>) -> Vec<ColoredLine> {
     let Some(Pose { position_m, .. }) = tick.between_eyes() else { return Vec::new() };
-    floor(position_m, 0.0)
+    let floor = floor_y_m.into_iter().flat_map(|y_m| floor(position_m, y_m));
+    floor
         .chain(horizon(position_m))
         .map(|line| ColoredLine::new(line.ends_m, line.alphas, FLOOR_RGB))
         .collect()

@@ -30,7 +30,11 @@ fn a_second_program_takes_the_hands_and_the_session_goes_on() {
     second.until("a hand that lets go", |tick| tick.hands[0].grip.is_some() && tick.hands[0].squeeze == 0.0);
     assert!(second.interrupt().json()["refreshes"].as_u64().unwrap() > 0);
     first.until("the focus again", |tick| tick.hands[0].grip.is_some());
-    let report = first.interrupt().json();
+    let first = first.interrupt();
+    for said in ["another program has the hands now", "the hands are here"] {
+        assert!(first.stderr.contains(said), "{said}: {}", first.stderr);
+    }
+    let report = first.json();
     assert_eq!(report["ended"], "the session was closed");
     assert_eq!(report["failures"], serde_json::json!([]));
     let position_m = &report["stand"]["position_m"];
@@ -49,11 +53,16 @@ fn a_runtime_that_is_killed_is_told_and_the_exit_code_says_so() {
     let run = vr.wait();
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.error().contains("runtime"), "{run:?}");
+    let ticks = recorded(&place.folder().join("killed/session.jsonl"));
+    assert!(ticks.ticks().iter().any(has_eyes), "what was recorded until then is kept");
 }
 
 #[test]
 fn no_runtime_is_told_and_the_exit_code_says_so() {
     let Some(place) = Place::start(Compositor::None) else { return };
+    let missing = place.run(&["vr", "missing.nrrd", "--no-mirror"]);
+    assert_eq!(missing.code, 2, "{missing:?}");
+    assert!(missing.error().contains("missing.nrrd"), "{missing:?}");
     let run = place.run(&["vr", "sphere.nrrd", "--no-mirror"]);
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.error().contains("start the headset's software"), "{run:?}");

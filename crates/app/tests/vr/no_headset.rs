@@ -250,3 +250,25 @@ fn a_bad_volume_is_refused_and_no_recording_is_left() {
         std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name()).collect();
     assert_eq!(left.len(), 2, "{left:?}");
 }
+
+#[test]
+fn casting_goes_on_where_drawing_takes_longer_than_a_refresh() {
+    let folder = folder();
+    let bench = ["bench", "vr", "sphere.nrrd", "--size", "1344x1512", "--refreshes", "100", "--json"];
+    let report = wheatstone(folder.path(), &bench).json();
+    let row = &report["rows"][0];
+    assert!(row["pictures"].as_u64().unwrap() > 1, "{row}");
+}
+
+#[test]
+fn a_recording_without_eyes_ends_when_it_is_told_to() {
+    let folder = folder();
+    let header = r#"{"wheatstone_recording":1,"units":"s, m, tangents, unit quaternions as x, y, z, w","period_s":0.02,"frusta":[{"left":-1.0,"right":1.0,"down":-1.0,"up":1.0,"near_m":0.01},{"left":-1.0,"right":1.0,"down":-1.0,"up":1.0,"near_m":0.01}]}"#;
+    let hand = r#"{"squeeze":0.0,"trigger":0.0,"stick":[0.0,0.0],"menu":false}"#;
+    let tick = |time_s: f64| format!(r#"{{"time_s":{time_s},"hands":[{hand},{hand}]}}"#);
+    std::fs::write(folder.path().join("blind.jsonl"), format!("{header}\n{}\n{}\n", tick(0.0), tick(1e6)))
+        .unwrap();
+    let vr = ["vr", "sphere.nrrd", "--headset", "none", "--patient", "--replay", "blind.jsonl", "--json"];
+    let report = wheatstone(folder.path(), &[&vr[..], &["--refreshes", "40"]].concat()).json();
+    assert_eq!([&report["refreshes"], &report["shown"], &report["dropped"]], [40, 0, 0]);
+}
