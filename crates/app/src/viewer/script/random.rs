@@ -2,7 +2,7 @@
 
 use super::chord::Chord;
 use super::drag::{Button, Drag};
-use super::step::Step;
+use super::step::{Goal, Step};
 use crate::look::ModeName;
 use crate::viewer::command::Command;
 use crate::viewer::state::{Arrangement, Edit, EyeMethod, Face, Plane, WarpName};
@@ -19,18 +19,19 @@ const KEYS: [Key; 10] =
 /// Keys that are held.
 const HELD: [Key; 6] = [Key::W, Key::S, Key::A, Key::E, Key::ArrowRight, Key::ArrowUp];
 
-/// Steps from a seed for some time, then the end.
+/// Steps from a seed for some time once the first volume is there, then the end.
 pub(crate) fn random_steps(seed: u64, duration: Duration) -> impl Iterator<Item = Step> + 'static {
     let mut rng = Rng::with_seed(seed);
     let end = Instant::now() + duration;
     let mut has_ended = false;
-    std::iter::from_fn(move || {
+    let events = std::iter::from_fn(move || {
         if has_ended {
             return None;
         }
         has_ended = Instant::now() >= end;
         Some(if has_ended { Step::Do(Command::Quit) } else { step(&mut rng) })
-    })
+    });
+    std::iter::once(Step::WaitFor(Goal::Volume)).chain(events)
 }
 
 fn step(rng: &mut Rng) -> Step {
@@ -120,6 +121,6 @@ mod tests {
     #[test]
     fn a_soak_ends() {
         let steps: Vec<Step> = random_steps(1, Duration::ZERO).collect();
-        assert_eq!(steps, [Step::Do(Command::Quit)]);
+        assert_eq!(steps, [Step::WaitFor(Goal::Volume), Step::Do(Command::Quit)]);
     }
 }
