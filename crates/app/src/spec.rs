@@ -4,6 +4,7 @@ use glam::DVec3;
 use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 use wheatstone_core::cast::DIRECTIONAL_STEPS;
+use wheatstone_core::lit_sphere::Style;
 use wheatstone_core::scene::{ClipPlane, MAX_DIRECTIONS, Shading};
 use wheatstone_core::skip::BlockSize;
 use wheatstone_core::volume::VoxelType;
@@ -119,13 +120,14 @@ pub(crate) fn color(text: &str) -> Result<[f32; 3], String> {
     Ok([16, 8, 0].map(|shift| ((rgb >> shift) & 255) as f32 / 255.0))
 }
 
-/// `none`, `phong`, `shadow`, `ambient` or `directional:D`.
+/// `none`, `phong`, `shadow`, `ambient`, `directional:D` or `style:LOW:HIGH`.
 pub(crate) fn shading(text: &str) -> Result<Shading, String> {
     match text {
         "none" => Ok(Shading::None),
         "phong" => Ok(Shading::Phong),
         "shadow" => Ok(Shading::Shadow),
         "ambient" => Ok(Shading::Ambient),
+        _ if text.starts_with("style:") => styles(text),
         _ => text
             .strip_prefix("directional:")
             .and_then(|count| count.parse().ok())
@@ -133,9 +135,22 @@ pub(crate) fn shading(text: &str) -> Result<Shading, String> {
             .map(|directions| Shading::Directional { directions })
             .ok_or_else(|| {
                 format!(
-                    "must be none, phong, shadow, ambient or directional:D with D from 0 to {MAX_DIRECTIONS}"
+                    "must be none, phong, shadow, ambient, directional:D with D from 0 to {MAX_DIRECTIONS} or style:LOW:HIGH"
                 )
             }),
+    }
+}
+
+/// `style:LOW:HIGH`, the styles of low and of high values, or `style:BOTH`.
+fn styles(text: &str) -> Result<Shading, String> {
+    let names = text.strip_prefix("style:").unwrap_or(text);
+    let (low, high) = names.split_once(':').unwrap_or((names, names));
+    match (Style::named(low), Style::named(high)) {
+        (Some(low), Some(high)) => Ok(Shading::LitSphere { low, high }),
+        _ => {
+            let all: Vec<&str> = Style::ALL.iter().map(|style| style.name()).collect();
+            Err(format!("must be style:LOW:HIGH of {}", all.join(", ")))
+        }
     }
 }
 
@@ -181,6 +196,7 @@ pub(crate) fn shading_name(shading: Shading) -> String {
         Shading::Shadow => "shadow".to_owned(),
         Shading::Ambient => "ambient".to_owned(),
         Shading::Directional { directions } => format!("directional:{directions}"),
+        Shading::LitSphere { low, high } => format!("style:{}:{}", low.name(), high.name()),
     }
 }
 
@@ -297,13 +313,14 @@ mod tests {
 
     #[test]
     fn names_and_colors() {
-        for text in ["none", "phong", "shadow", "ambient", "directional:64"] {
+        for text in ["none", "phong", "shadow", "ambient", "directional:64", "style:clay:glass"] {
             assert_eq!(shading_name(shading(text).unwrap()), text);
         }
         assert_eq!(shading_of_samples("0"), Ok(Shading::None));
         assert_eq!(shading_of_samples("16"), Ok(Shading::Directional { directions: 4 }));
         assert!(shading_of_samples("6").is_err() && shading_of_samples("260").is_err());
         assert!(shading("directional:65").is_err() && shading("gouraud").is_err());
+        assert!(shading("style:").is_err() && shading("style:clay:wool").is_err());
         assert_eq!(color("#ff0000"), Ok([1.0, 0.0, 0.0]));
         assert!(color("ff00").is_err() && color("+f0000").is_err());
         assert_eq!(voxel_type("uint16"), Ok(VoxelType::U16));

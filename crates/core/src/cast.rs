@@ -1,6 +1,9 @@
 //! The numbers of a cast: settings and placement turned into what a kernel reads, once, for both casters.
 
-use crate::scene::{GradientMethod, Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading};
+use crate::lit_sphere::LitSphere;
+use crate::scene::{
+    BoundaryEnhancement, GradientMethod, Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading,
+};
 use crate::transfer::Lut;
 use crate::volume::Window;
 use glam::{BVec3, DAffine3, DVec3, Mat3, Vec3, Vec3A, Vec4};
@@ -99,6 +102,10 @@ pub struct CastParameters {
     pub shadow_step: Vec3A,
     /// Value integral to grey level: one over the volume's longest side in voxel lengths.
     pub xray_scale: f32,
+    /// How samples look in each direction that they may face, of value 0 and of value 1; none of other shadings.
+    pub lit_spheres: Vec<LitSphere>,
+    /// How much denser samples are where the value changes, of composites.
+    pub boundaries: Option<BoundaryEnhancement>,
     /// Unit directions of directional shading, metric space; their absolute components are the light's colour.
     pub directions: Vec<Vec3A>,
 }
@@ -152,6 +159,11 @@ impl CastParameters {
             shadow_step: (texture_from_metric.as_mat3() * (shadow_direction * SHADING_STEP)).into(),
             xray_scale: (1.0 / sides.into_iter().fold(0.0, f64::max)) as f32,
             directions,
+            lit_spheres: match settings.shading {
+                Shading::LitSphere { low, high } => [low, high].map(LitSphere::of).to_vec(),
+                _ => Vec::new(),
+            },
+            boundaries: settings.boundaries.filter(|_| settings.mode == Mode::Composite),
         }
     }
 
@@ -159,7 +171,7 @@ impl CastParameters {
     pub fn shading_samples(&self) -> u32 {
         match self.shading {
             Shading::None => 0,
-            Shading::Phong => self.gradient.samples(),
+            Shading::Phong | Shading::LitSphere { .. } => self.gradient.samples(),
             Shading::Shadow => SHADOW_SAMPLES,
             Shading::Ambient => AMBIENT_SAMPLES,
             Shading::Directional { .. } => DIRECTIONAL_STEPS * self.directions.len() as u32,

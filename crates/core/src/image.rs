@@ -47,6 +47,29 @@ pub struct RgbImage {
 }
 
 impl RgbImage {
+    /// A part of the picture: its top left pixel, width and height.
+    ///
+    /// # Panics
+    /// If it reaches beyond the picture.
+    pub fn cut(&self, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> Self {
+        let row = |y: u32| {
+            let first = y as usize * self.width as usize + left as usize;
+            self.rgb[first..first + width as usize].iter().copied()
+        };
+        Self { width, height, rgb: (top..top + height).flat_map(row).collect() }
+    }
+
+    /// Puts another picture into this one, its top left pixel to a place.
+    ///
+    /// # Panics
+    /// If it reaches beyond this one.
+    pub fn paste(&mut self, part: &Self, [left, top]: [u32; 2]) {
+        for (y, row) in part.rgb.chunks(part.width as usize).enumerate() {
+            let first = (top as usize + y) * self.width as usize + left as usize;
+            self.rgb[first..first + row.len()].copy_from_slice(row);
+        }
+    }
+
     /// The means of squares of so many pixels along each side; what is left over on the right and below is left out.
     ///
     /// # Panics

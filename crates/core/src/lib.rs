@@ -12,6 +12,8 @@ pub mod gradient_map;
 pub mod head;
 pub mod headset;
 pub mod image;
+pub mod lightfield;
+pub mod lit_sphere;
 pub mod metrics;
 pub mod phantom;
 pub mod reference;

@@ -1,5 +1,6 @@
 //! What to show and how: the settings that both casters take.
 
+use crate::lit_sphere::Style;
 use crate::transfer::TransferFunction;
 use crate::volume::{Grid, Volume, Window};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
@@ -40,6 +41,26 @@ pub enum Shading {
         /// Number of directions, at most [`MAX_DIRECTIONS`]; 0 takes no extra samples.
         directions: u32,
     },
+    /// By the direction that a surface faces in eye space, in the style of its value: a style transfer function.
+    LitSphere {
+        /// The style of value 0.
+        low: Style,
+        /// The style of value 1; in between looks are interpolated.
+        high: Style,
+    },
+}
+
+/// How much denser samples of a composite are where the value changes: by inside + gain · |∇v|ᵉ, |∇v| being the change of the
+/// normalised value per voxel length, at most 1 (Ebert and Rheingans, "Volume illustration: non-photorealistic rendering of volume
+/// models", 2000). Shading rays go by the transfer function alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundaryEnhancement {
+    /// Factor where the value does not change; 0 leaves boundaries alone.
+    pub inside: f32,
+    /// What is added where it changes by 1 per voxel length.
+    pub gain: f32,
+    /// The exponent e, at least 1.
+    pub exponent: u32,
 }
 
 /// Most directions that [`Shading::Directional`] takes.
@@ -157,6 +178,8 @@ pub struct Settings {
     pub preintegrated: bool,
     /// How visible samples are lit.
     pub shading: Shading,
+    /// How much denser composites are where the value changes; `None` leaves densities as they are.
+    pub boundaries: Option<BoundaryEnhancement>,
     /// Display-referred colour of an isosurface; `None` is a light grey.
     pub surface_rgb: Option<[f32; 3]>,
     /// How gradients are estimated.
@@ -183,6 +206,7 @@ impl Settings {
             transfer,
             preintegrated: false,
             shading: Shading::None,
+            boundaries: None,
             surface_rgb: None,
             gradient: GradientMethod::default(),
             sampling_factor: 1.0,

@@ -49,7 +49,17 @@ pub(crate) struct Variant {
 
 impl Variant {
     /// The kernel for some parameters.
-    pub(crate) fn of(parameters: &CastParameters, sources: &Sources<'_>, tiles: Tiles) -> Self {
+    ///
+    /// # Errors
+    /// [`GpuError::CpuOnly`] if none is.
+    pub(crate) fn of(
+        parameters: &CastParameters,
+        sources: &Sources<'_>,
+        tiles: Tiles,
+    ) -> Result<Self, GpuError> {
+        if parameters.boundaries.is_some() {
+            return Err(GpuError::CpuOnly { setting: "boundary enhancement" });
+        }
         let (accumulator, is_shaded) = match parameters.mode {
             Mode::Composite => (COMPOSITE, true),
             Mode::Mip => ("lib/accumulate_mip", false),
@@ -59,7 +69,7 @@ impl Variant {
             Mode::Isosurface { .. } => (FIRST_HIT, true),
         };
         let is_quads = sources.volume.format() == TexelFormat::Rgba8UnormQuads;
-        Self {
+        Ok(Self {
             accumulator,
             classifier: match parameters.classifier {
                 Classifier::Value => "lib/classify_value",
@@ -74,6 +84,9 @@ impl Variant {
                 Shading::Shadow => "lib/shade_shadow",
                 Shading::Ambient => "lib/shade_ambient",
                 Shading::Directional { .. } => "lib/shade_directional",
+                Shading::LitSphere { .. } => {
+                    return Err(GpuError::CpuOnly { setting: "shading by lit spheres" });
+                }
             },
             gradient: match parameters.gradient {
                 GradientMethod::CentralDifferences if is_quads => "lib/gradient_central_quads",
@@ -93,7 +106,7 @@ impl Variant {
             record: RECORD_NONE,
             front: FRONT_NONE,
             start: START_AT_ONCE,
-        }
+        })
     }
 
     /// The kernel of a composite that goes on behind what its target holds: it leaves pixels as they are whose rays miss.
@@ -329,7 +342,7 @@ pub(crate) fn iterations_of_shading(parameters: &CastParameters, leap: &Leap<'_>
         if leaps { LOCKSTEP_ITERATIONS * samples + 2 } else { samples + 4 }
     };
     match parameters.shading {
-        Shading::None | Shading::Phong => 0,
+        Shading::None | Shading::Phong | Shading::LitSphere { .. } => 0,
         Shading::Shadow => along_shading_ray(SHADOW_SAMPLES),
         Shading::Ambient => AMBIENT_SAMPLES + 1,
         Shading::Directional { .. } => parameters.directions.len() as u32 + 1,

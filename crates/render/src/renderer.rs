@@ -189,7 +189,7 @@ impl Renderer {
     ) -> Result<Prepared, GpuError> {
         let listing = Listing::for_cast(gpu, &parameters, &sources.leap);
         let tiles = if listing.is_some() { Tiles::Listed } else { Tiles::All };
-        let variant = Variant::of(&parameters, sources, tiles);
+        let variant = Variant::of(&parameters, sources, tiles)?;
         self.casts.pipeline(gpu, variant)?;
         let Sources { volume, gradient_map, leap } = sources;
         let iterations_per_sample = cast_pass::iterations_per_sample(&parameters, leap);

@@ -159,7 +159,7 @@ fn columns_moved(shown: &View, moved_m: f64, corners: &[DVec3]) -> f64 {
         Projection::Perspective(lens) => {
             f64::from(shown.size[0]) / (lens.right - lens.left) * moved_m / nearest_m
         }
-        Projection::Orthographic(_) => 0.0,
+        Projection::Orthographic(_) | Projection::Mcop(_) => 0.0,
     }
 }
 

@@ -4,7 +4,7 @@ use crate::view::{Projection, View};
 
 /// Width of what a pixel shows at a depth: `at_eye_m + per_metre · depth`, metres.
 ///
-/// That of a light-field display is s(z) = s₀ + 2 tan(Φ/2) · |z|.
+/// What a light-field display resolves is `lightfield::Resolution`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
     /// At depth 0, metres.
@@ -14,7 +14,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// That of the shorter sides of a view's pixels.
+    /// That of the shorter sides of a view's pixels; of a projector's picture, those on the screen.
     pub fn of(view: &View) -> Self {
         let shorter = |width: f64, height: f64| {
             let [columns, rows] = view.size.map(f64::from);
@@ -26,6 +26,9 @@ impl Footprint {
             }
             Projection::Orthographic(o) => {
                 Self { at_eye_m: shorter(o.right_m - o.left_m, o.up_m - o.down_m), per_metre: 0.0 }
+            }
+            Projection::Mcop(m) => {
+                Self { at_eye_m: shorter(m.right_m - m.left_m, m.up_m - m.down_m), per_metre: 0.0 }
             }
         }
     }

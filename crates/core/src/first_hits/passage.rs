@@ -52,7 +52,7 @@ impl Passage {
             let share = i as f64 / SLABS as f64;
             match view.projection {
                 Projection::Perspective(_) => 1.0 / ((1.0 - share) / start_m + share / end_m),
-                Projection::Orthographic(_) => (1.0 - share) * start_m + share * end_m,
+                Projection::Orthographic(_) | Projection::Mcop(_) => (1.0 - share) * start_m + share * end_m,
             }
         });
         let passage = Self {
@@ -127,7 +127,8 @@ impl Passage {
     }
 }
 
-/// A point (`w` = 1) or vector (0) in a view's space in the homogeneous coordinates of its picture.
+/// A point (`w` = 1) or vector (0) in a view's space in the homogeneous coordinates of its picture; not a number for pictures of
+/// projectors, which have none.
 fn homogeneous(view: &View, at: DVec3, w: f64) -> DVec4 {
     let [width, height] = view.size.map(f64::from);
     match view.projection {
@@ -139,5 +140,6 @@ fn homogeneous(view: &View, at: DVec3, w: f64) -> DVec4 {
             let (across, down) = (width / (o.right_m - o.left_m), height / (o.down_m - o.up_m));
             DVec4::new((at.x - w * o.left_m) * across, (at.y - w * o.up_m) * down, w, -at.z)
         }
+        Projection::Mcop(_) => DVec4::NAN,
     }
 }

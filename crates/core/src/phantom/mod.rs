@@ -13,10 +13,14 @@ mod shepp_logan;
 mod snake;
 mod solid_box;
 mod sphere;
+mod wedding_cake;
+mod wire_box;
 
 pub use orientation::{CUBE_VALUE, LETTER_VALUE};
 pub use solid_box::{BOX_HI, BOX_LO};
 pub use sphere::{SPHERE_EDGE_VOXELS, SPHERE_RADIUS};
+pub use wedding_cake::{CAKE_VALUES, WeddingCake};
+pub use wire_box::WIRE_HALF_WIDTH_VOXELS;
 
 use crate::volume::{Grid, GridError, Volume, VolumeError, Voxels};
 use glam::DVec3;
@@ -33,6 +37,9 @@ pub enum Phantom {
     /// 1 between [`BOX_LO`] and [`BOX_HI`] along each axis, 0 elsewhere; a voxel that the boundary cuts holds the
     /// fraction of it that lies inside.
     SolidBox,
+    /// The twelve edges of the box between [`BOX_LO`] and [`BOX_HI`]: 1 on them, falling linearly to 0 over
+    /// [`WIRE_HALF_WIDTH_VOXELS`] voxels.
+    WireBox,
     /// 1 inside a centred sphere of radius [`SPHERE_RADIUS`], 0 outside; the value falls linearly over
     /// [`SPHERE_EDGE_VOXELS`] voxels across the surface, which is at the value ½.
     Sphere,
@@ -82,6 +89,7 @@ impl Phantom {
     /// Every phantom.
     pub const ALL: &[Self] = &[
         Self::SolidBox,
+        Self::WireBox,
         Self::Sphere,
         Self::Ramp,
         Self::MarschnerLobb,
@@ -96,6 +104,7 @@ impl Phantom {
     pub fn name(self) -> &'static str {
         match self {
             Self::SolidBox => "box",
+            Self::WireBox => "wire-box",
             Self::Sphere => "sphere",
             Self::Ramp => "ramp",
             Self::MarschnerLobb => "marschner-lobb",
@@ -117,6 +126,7 @@ impl Phantom {
         let size = grid.dims_vec();
         let voxels = match self {
             Self::SolidBox => eight_bit(dims, |p| solid_box::value(p, size))?,
+            Self::WireBox => eight_bit(dims, |p| wire_box::value(p, size))?,
             Self::Sphere => eight_bit(dims, |p| sphere::value(p, size))?,
             Self::Ramp => Voxels::F32(sample(dims, |p| ramp::value(p) as f32)?),
             Self::MarschnerLobb => Voxels::F32(sample(dims, |p| marschner_lobb::value(p) as f32)?),

@@ -81,11 +81,12 @@ pub(super) fn each_visible<C: Classify, L: Lanes>(
         if may_be_visible.any() {
             let position = ray.at(walk.index);
             let classified = C::classify(context, token, position, value, previous);
-            let log2 = L::select(may_be_visible, classified.entry.log2, zero) * ray.step_length;
+            let shaded = shade::<C, L>(context, token, ray, position, value, &classified);
+            let log2 =
+                L::select(may_be_visible, classified.entry.log2, zero) * shaded.density * ray.step_length;
             let transmittance = log2.exp2();
             is_transparent = one.le(transmittance);
-            let rgb = shade::<C, L>(context, token, ray, position, &classified);
-            let has_ended = visit(Sample { index: walk.index, rgb, log2, transmittance });
+            let has_ended = visit(Sample { index: walk.index, rgb: shaded.rgb, log2, transmittance });
             walk.is_active = walk.is_active & !has_ended;
         }
         previous = value;

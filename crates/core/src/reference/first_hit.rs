@@ -51,7 +51,8 @@ impl Accumulate for FirstHit {
         let position = ray.at(index);
         let classified = Isovalue::classify(context, token, position, isovalue, isovalue);
         let lifted = position + lift(context, token, classified.gradient);
-        let rgb = shade::<Isovalue, L>(context, token, ray, lifted, &classified);
+        let isovalue = L::splat(token, context.parameters.isovalue);
+        let rgb = shade::<Isovalue, L>(context, token, ray, lifted, isovalue, &classified).rgb;
         let depth_m = L::select(is_found, ray.depth_m(index), miss.depth_m);
         Pixels {
             rgb: Vec3::select(is_found, rgb, miss.rgb),

@@ -56,7 +56,7 @@ fn cast_rows<C: Classify>(
     let rays = RayField::new(view, context.parameters.texture_from_world);
     let world_rays = RayField::new(view, DAffine3::IDENTITY);
     let dims = context.sampler.dims().as_dvec3();
-    let [columns, rows] = pixels_of_box(&rays, context.parameters, view.size);
+    let [columns, rows] = pixels_of_box(view, context.parameters);
     let [width, height] = view.size;
     let mut image = Image::transparent(width, height);
     let mut reads = vec![Reads::default(); image.color.len()];

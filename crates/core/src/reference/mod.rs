@@ -18,6 +18,7 @@ mod lanes;
 mod lanes_exact;
 mod lanes_wide;
 mod layers;
+mod lit_sphere;
 mod lut;
 mod magnitude;
 mod oracle;

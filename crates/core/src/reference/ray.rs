@@ -4,8 +4,8 @@ use super::lanes::Lanes;
 use super::skip::{BlockMap, Blocks, SkipSampler};
 use super::vector::Vec3;
 use crate::cast::CastParameters;
-use crate::view::RayField;
-use glam::{BVec3, DMat3, DVec2, DVec3};
+use crate::view::{PixelRect, RayField, View};
+use glam::DVec3;
 use std::ops::Range;
 
 /// Direction components nearer to zero than this count as this far from it, so that no division overflows.
@@ -35,6 +35,8 @@ pub(super) struct PixelRay {
     to_viewpoint: DVec3,
     /// Change of that from one sample to the next.
     to_viewpoint_step: DVec3,
+    /// Upwards in the picture, metric space, of any length.
+    up: DVec3,
 }
 
 impl PixelRay {
@@ -51,7 +53,7 @@ impl PixelRay {
         let sample_count = samples_between(near, far, metric_direction, parameters);
         let step_depth_m = if sample_count > 0 { (far - near) / f64::from(sample_count) } else { 0.0 };
         let first_depth_m = near + 0.5 * step_depth_m;
-        let (viewpoint, w) = (rays.viewpoint.truncate(), rays.viewpoint.w);
+        let (viewpoint, w) = (rays.viewpoint.truncate() + x * rays.viewpoint_dx, rays.viewpoint.w);
         Self {
             first: origin + direction * first_depth_m,
             step: direction * step_depth_m,
@@ -63,6 +65,7 @@ impl PixelRay {
             to_viewpoint: metric_from_texture * (viewpoint - w * origin)
                 - metric_direction * (w * first_depth_m),
             to_viewpoint_step: metric_direction * (-w * step_depth_m),
+            up: metric_from_texture * -(rays.origin_dy + rays.direction_dy),
         }
     }
 
@@ -100,6 +103,8 @@ pub(super) struct Ray<L> {
     to_viewpoint: Vec3<L>,
     /// Change of that from one sample to the next.
     to_viewpoint_step: Vec3<L>,
+    /// Upwards in the picture, metric space, of any length.
+    pub(super) up: Vec3<L>,
 }
 
 impl<L: Lanes> Ray<L> {
@@ -121,6 +126,7 @@ impl<L: Lanes> Ray<L> {
             step_depth_m: number(|ray| ray.step_depth_m),
             to_viewpoint: vector(|ray| ray.to_viewpoint, DVec3::ONE),
             to_viewpoint_step: vector(|ray| ray.to_viewpoint_step, DVec3::ONE),
+            up: vector(|ray| ray.up, DVec3::ONE),
         }
     }
 
@@ -160,44 +166,9 @@ pub fn sample_count(rays: &RayField, parameters: &CastParameters, x: f64, y: f64
 }
 
 /// Columns and rows of the pixels whose rays may cross the visible box.
-pub(super) fn pixels_of_box(
-    rays: &RayField,
-    parameters: &CastParameters,
-    [width, height]: [u32; 2],
-) -> [Range<usize>; 2] {
-    let whole = [0..width as usize, 0..height as usize];
-    // Either the origin or the direction depends on the pixel: a point is origin + depth · direction, linear in
-    // (column · depth, row · depth, depth) or (column, row, depth).
-    let is_perspective = rays.origin_dx == DVec3::ZERO;
-    let point_from_pixel = if is_perspective {
-        DMat3::from_cols(rays.direction_dx, rays.direction_dy, rays.direction)
-    } else {
-        DMat3::from_cols(rays.origin_dx, rays.origin_dy, rays.direction)
-    };
-    let pixel_from_point = point_from_pixel.inverse();
-    let (box_lo, box_hi) = (parameters.box_lo.as_dvec3(), parameters.box_hi.as_dvec3());
-    let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for corner in 0..8 {
-        let is_high = BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0);
-        let pixel = pixel_from_point * (DVec3::select(is_high, box_hi, box_lo) - rays.origin);
-        let pixel = if !is_perspective {
-            pixel.truncate()
-        } else if pixel.z > 0.0 {
-            pixel.truncate() / pixel.z
-        } else {
-            return whole;
-        };
-        if !pixel.is_finite() {
-            return whole;
-        }
-        (lo, hi) = (lo.min(pixel), hi.max(pixel));
-    }
-    // A pixel more on each side for rounding.
-    let between = |lo: f64, hi: f64, count: u32| {
-        let bounded = |at: f64| at.clamp(0.0, f64::from(count)) as usize;
-        bounded(lo.floor() - 1.0)..bounded(hi.ceil() + 1.0)
-    };
-    [between(lo.x, hi.x, width), between(lo.y, hi.y, height)]
+pub(super) fn pixels_of_box(view: &View, parameters: &CastParameters) -> [Range<usize>; 2] {
+    let PixelRect { columns, rows } = PixelRect::around(view, parameters.visible_corners_world());
+    [columns, rows].map(|range| range.start as usize..range.end as usize)
 }
 
 #[inline(always)]

@@ -307,7 +307,7 @@ fn cast_bands<A: Accumulate>(path: impl Path, context: &Context<'_>, frame: Fram
     let mut visible_from_m = vec![f32::INFINITY; reads.len()];
     assert_eq!([image.width, image.height], view.size, "the picture in front has the size of the view");
     let (rows, width) = (path.band_rows(), image.width as usize);
-    let [hit_columns, hit_rows] = pixels_of_box(&field, context.parameters, view.size);
+    let [hit_columns, hit_rows] = pixels_of_box(view, context.parameters);
     let rays = Rays { field, starts };
     let bands = image
         .color

@@ -4,6 +4,7 @@ use super::classify::{Classified, Classify};
 use super::context::Context;
 use super::gradient::gradient_at;
 use super::lanes::{Lanes, Mask};
+use super::lit_sphere::{Shaded, at_boundary, lit_sphere};
 use super::ray::Ray;
 use super::skip::Walk;
 use super::vector::Vec3;
@@ -13,30 +14,37 @@ use crate::cast::{
 use crate::scene::Shading;
 use glam::Vec3A;
 
-/// The display-referred colour of a lit sample.
+/// A lit sample: its display-referred colour and what its density is multiplied by.
 #[inline(always)]
 pub(super) fn shade<C: Classify, L: Lanes>(
     context: &Context<'_>,
     token: L::Token,
     ray: &Ray<L>,
     position: Vec3<L>,
+    value: L,
     classified: &Classified<L>,
-) -> Vec3<L> {
+) -> Shaded<L> {
     let rgb = classified.entry.rgb;
-    match context.parameters.shading {
-        Shading::None => rgb,
+    let gradient = || classified.gradient.unwrap_or_else(|| gradient_at(context, token, position));
+    let as_dense = |rgb: Vec3<L>| Shaded { rgb, density: L::splat(token, 1.0) };
+    let shaded = match context.parameters.shading {
+        Shading::None => as_dense(rgb),
         Shading::Phong => {
-            let gradient = match classified.gradient {
-                Some(gradient) => gradient,
-                None => gradient_at(context, token, position),
-            };
-            phong(context, token, ray.viewpoint_direction(token, position), rgb, gradient)
+            as_dense(phong(context, token, ray.viewpoint_direction(token, position), rgb, gradient()))
         }
-        Shading::Shadow => rgb * shadow::<C, L>(context, token, position),
-        Shading::Ambient => rgb * ambient::<C, L>(context, token, position),
+        Shading::Shadow => as_dense(rgb * shadow::<C, L>(context, token, position)),
+        Shading::Ambient => as_dense(rgb * ambient::<C, L>(context, token, position)),
         Shading::Directional { .. } => {
             let light = directional::<C, L>(context, token, position);
-            Vec3 { x: rgb.x * light.x, y: rgb.y * light.y, z: rgb.z * light.z }
+            as_dense(Vec3 { x: rgb.x * light.x, y: rgb.y * light.y, z: rgb.z * light.z })
+        }
+        Shading::LitSphere { .. } => lit_sphere(context, token, ray, position, value, rgb, gradient()),
+    };
+    match context.parameters.boundaries {
+        None => shaded,
+        Some(boundaries) => {
+            let density = shaded.density * at_boundary(token, boundaries, gradient());
+            Shaded { density, ..shaded }
         }
     }
 }

@@ -42,6 +42,15 @@ impl<L: Lanes> Vec3<L> {
     }
 
     #[inline(always)]
+    pub(super) fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    #[inline(always)]
     pub(super) fn length_squared(self) -> L {
         self.dot(self)
     }

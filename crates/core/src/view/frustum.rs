@@ -1,5 +1,6 @@
-//! Projections: a frustum of four tangents, or an orthographic box.
+//! Projections: a frustum of four tangents, an orthographic box, or a projector's picture.
 
+use super::Mcop;
 use std::ops::Range;
 use thiserror::Error;
 
@@ -47,6 +48,8 @@ pub enum Projection {
     Perspective(Frustum),
     /// All rays are parallel to −Z.
     Orthographic(OrthographicBox),
+    /// Rays go through an emitter horizontally and through a virtual viewer vertically.
+    Mcop(Mcop),
 }
 
 /// Why numbers do not make a frustum.
@@ -122,6 +125,7 @@ impl Projection {
         match self {
             Self::Perspective(f) => (f.near_m, f.far_m),
             Self::Orthographic(o) => (o.near_m, o.far_m),
+            Self::Mcop(m) => (m.near_m, m.far_m),
         }
     }
 
@@ -133,6 +137,7 @@ impl Projection {
         match self {
             Self::Perspective(f) => Self::Perspective(Frustum { near_m, far_m, ..f }),
             Self::Orthographic(o) => Self::Orthographic(OrthographicBox { near_m, far_m, ..o }),
+            Self::Mcop(m) => Self::Mcop(Mcop { near_m, far_m, ..m }),
         }
     }
 }

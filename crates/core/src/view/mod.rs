@@ -1,6 +1,7 @@
 //! Views: where the eye is, what it looks through, and the rays of its pixels.
 
 mod frustum;
+mod mcop;
 mod orbit;
 mod pixel_rect;
 mod placement;
@@ -9,6 +10,7 @@ mod rig;
 mod viewpoint;
 
 pub use frustum::{Frustum, FrustumError, OrthographicBox, Projection};
+pub use mcop::Mcop;
 pub use orbit::Orbit;
 pub use pixel_rect::PixelRect;
 pub(crate) use pixel_rect::whole_pixels;

@@ -97,7 +97,8 @@ impl View {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), depth| (near.min(depth), far.max(depth)))
     }
 
-    /// Where a world point is seen, in pixels from the top left; nowhere if it is not in front of the eye.
+    /// Where a world point is seen, in pixels from the top left; nowhere if it is not in front of the eye, or between the emitter's and
+    /// the viewer's planes.
     pub fn pixel_position(&self, world: DVec3) -> Option<DVec2> {
         let at = self.view_from_world.transform_point3(world);
         let of_picture = match self.projection {
@@ -111,6 +112,11 @@ impl View {
             }
             Projection::Orthographic(o) => {
                 DVec2::new((at.x - o.left_m) / (o.right_m - o.left_m), (at.y - o.up_m) / (o.down_m - o.up_m))
+            }
+            Projection::Mcop(m) => {
+                let on_screen_m = m.screen_m(at)?;
+                let (x, y) = (on_screen_m.x - m.left_m, on_screen_m.y - m.up_m);
+                DVec2::new(x / (m.right_m - m.left_m), y / (m.down_m - m.up_m))
             }
         };
         Some(of_picture * DVec2::from(self.size.map(f64::from)))

@@ -35,7 +35,7 @@ fn moved(view: &View, right_m: f64, convergence_m: f64) -> View {
     let tangent = -right_m / convergence_m;
     let projection = match view.projection {
         Projection::Perspective(frustum) => Projection::Perspective(frustum.sheared(tangent)),
-        parallel @ Projection::Orthographic(_) => parallel,
+        other @ (Projection::Orthographic(_) | Projection::Mcop(_)) => other,
     };
     let view_from_world = DAffine3::from_translation(DVec3::NEG_X * right_m) * view.view_from_world;
     View { view_from_world, projection, shaded_from: Some(view.viewpoint()), ..*view }

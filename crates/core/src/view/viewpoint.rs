@@ -1,7 +1,7 @@
 //! Where pictures are shaded from.
 
 use super::{Projection, View};
-use glam::{DAffine3, DVec3, DVec4};
+use glam::{DAffine3, DVec2, DVec3, DVec4};
 
 /// Where the viewer is for shading: what a headlight shines from and highlights are reflected to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ impl Viewpoint {
 
 impl View {
     /// Where the picture is shaded from: [`View::shaded_from`], or else its own eye, which is infinitely far away in a
-    /// parallel projection.
+    /// parallel projection, and of a projector of a light-field display the one that sees the middle of its picture.
     pub fn viewpoint(&self) -> Viewpoint {
         self.shaded_from.unwrap_or_else(|| {
             let world_from_view = self.view_from_world.inverse();
@@ -32,6 +32,10 @@ impl View {
                 Projection::Perspective(_) => Viewpoint::At(world_from_view.translation),
                 Projection::Orthographic(_) => {
                     Viewpoint::Towards(world_from_view.transform_vector3(DVec3::Z))
+                }
+                Projection::Mcop(m) => {
+                    let middle_m = 0.5 * DVec2::new(m.left_m + m.right_m, m.down_m + m.up_m);
+                    Viewpoint::At(world_from_view.transform_point3(m.eye_m(middle_m)))
                 }
             }
         })

@@ -19,4 +19,5 @@ mod shading;
 mod skipping;
 mod stereo;
 mod storage;
+mod styles;
 mod tolerance;

@@ -106,6 +106,7 @@ pub(crate) fn world_ray(view: &View, x: u32, y: u32) -> (DVec3, DVec3) {
         Projection::Orthographic(o) => {
             (DVec3::new(mix(o.left_m, o.right_m, across), mix(o.up_m, o.down_m, down), 0.0), DVec3::NEG_Z)
         }
+        Projection::Mcop(_) => panic!("these views are those of eyes"),
     };
     (world_from_view.transform_point3(origin), world_from_view.transform_vector3(direction))
 }
@@ -145,6 +146,7 @@ pub(crate) fn depths_within(
     let mut interval = match view.projection {
         Projection::Perspective(f) => (f.near_m, f.far_m),
         Projection::Orthographic(o) => (o.near_m, o.far_m),
+        Projection::Mcop(m) => (m.near_m, m.far_m),
     };
     for part in parts {
         let height = part.normal.dot(origin) - part.offset;

@@ -79,3 +79,10 @@ pub(crate) const DETAIL_DSSIM: f64 = 0.015;
 
 /// DSSIM of surfaces with sheets thinner than a voxel, cast over ten frames by leaping to the first hits of the last one.
 pub(crate) const LEAPING_DSSIM: f64 = 1e-3;
+
+/// Colour of a styled surface, against the map at its exact normal: 8-bit voxels turn normals by up to a hundredth, and bands and
+/// outlines change by up to four times as much.
+pub(crate) const STYLED_COLOR: f64 = 0.06;
+
+/// Channel difference of styled pictures by f32 lanes and the f64 lane: gradients that are hardly any, whose direction is rounded.
+pub(crate) const STYLED_LANES: f64 = 0.01;

@@ -1,0 +1,9 @@
+//! From measurements of a display of projectors to its description and to what remains to be corrected (LF §4, §5).
+
+mod color_table;
+mod fit;
+mod geometry_warp;
+
+pub use color_table::{ColorTable, NotATable};
+pub use fit::{Correspondence, Fit, FitError};
+pub use geometry_warp::{GeometryWarp, NotAWarp};

@@ -1,0 +1,148 @@
+//! Why a description is no display.
+
+use thiserror::Error;
+
+/// What is wrong with the description of a display.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DisplayError {
+    /// Not JSON, or a field missing, unknown or of another type.
+    #[error("{reason} (line {line}, column {column})")]
+    Syntax {
+        /// What was expected.
+        reason: String,
+        /// Counted from 1.
+        line: usize,
+        /// Counted from 1.
+        column: usize,
+    },
+    /// A form that this program does not know.
+    #[error("version {found} of the description; this program reads version {expected}")]
+    Version {
+        /// Version of the description.
+        found: u64,
+        /// Version that is read.
+        expected: u64,
+    },
+    /// A number out of its bounds.
+    #[error("{field} is {value}: must be {expected}")]
+    Number {
+        /// Which field, with its place in lists.
+        field: String,
+        /// As it is.
+        value: f64,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// A field that is needed and not there.
+    #[error("{field} is missing: must be a number")]
+    Missing {
+        /// Which field.
+        field: &'static str,
+    },
+    /// Something else where a number must be.
+    #[error("{field} is {found}: must be a number")]
+    NotANumber {
+        /// Which field.
+        field: String,
+        /// What is there.
+        found: String,
+    },
+    /// Something else where a list must be.
+    #[error("{field} is {found}: must be a list")]
+    NotAList {
+        /// Which field.
+        field: &'static str,
+        /// What is there.
+        found: String,
+    },
+    /// A list with too few or too many entries.
+    #[error("{field} has {count} entries: must have {expected}")]
+    Count {
+        /// Which list.
+        field: &'static str,
+        /// Entries that it has.
+        count: usize,
+        /// How many it must have.
+        expected: &'static str,
+    },
+    /// Two projectors with one id.
+    #[error("projectors[{second}].id is {id}, as of projectors[{first}]: ids must differ")]
+    RepeatedId {
+        /// The id.
+        id: u32,
+        /// Which projector has it first.
+        first: usize,
+        /// Which has it again.
+        second: usize,
+    },
+    /// A frame in which there is no room for one image below the header.
+    #[error(
+        "packing.frame_size_px is {}x{} with {header_rows} header rows: there is no room for an image of {}x{}",
+        frame[0], frame[1], image[0], image[1]
+    )]
+    FrameTooSmall {
+        /// Width and height of a frame, pixels.
+        frame: [u32; 2],
+        /// Rows of the header.
+        header_rows: u32,
+        /// Width and height of an image, pixels.
+        image: [u32; 2],
+    },
+    /// More pixels than are handled.
+    #[error("{field} are {count} in all: must be at most {most}")]
+    TooManyPixels {
+        /// Which pixels.
+        field: &'static str,
+        /// How many there are.
+        count: u64,
+        /// How many there may be.
+        most: u64,
+    },
+}
+
+impl From<serde_json::Error> for DisplayError {
+    fn from(error: serde_json::Error) -> Self {
+        let text = error.to_string();
+        let reason = text.split(" at line ").next().unwrap_or(&text).to_owned();
+        Self::Syntax { reason, line: error.line(), column: error.column() }
+    }
+}
+
+/// A number that keeps a rule.
+pub(super) fn check(
+    is_kept: bool,
+    field: impl Into<String>,
+    value: f64,
+    expected: &'static str,
+) -> Result<(), DisplayError> {
+    if is_kept && value.is_finite() {
+        return Ok(());
+    }
+    Err(DisplayError::Number { field: field.into(), value, expected })
+}
+
+/// A length that is above zero and of a size that displays have.
+pub(super) fn check_length_m(field: impl Into<String>, value: f64) -> Result<(), DisplayError> {
+    check(value > 0.0 && value <= LONGEST_M, field, value, "above 0 and at most 1000 m")
+}
+
+/// A coordinate about a display.
+pub(super) fn check_place_m(field: impl Into<String>, value: f64) -> Result<(), DisplayError> {
+    check(value.abs() <= LONGEST_M, field, value, "from -1000 to 1000 m")
+}
+
+/// Longest distance of anything from a display, metres.
+pub(super) const LONGEST_M: f64 = 1000.0;
+
+/// Most pixels along a side of any picture.
+pub(super) const LONGEST_SIDE_PX: u32 = 32_768;
+
+/// The sides of a picture.
+pub(super) fn check_size_px(field: &str, size: [u32; 2]) -> Result<(), DisplayError> {
+    for (axis, side) in size.into_iter().enumerate() {
+        let is_kept = (1..=LONGEST_SIDE_PX).contains(&side);
+        check(is_kept, format!("{field}[{axis}]"), f64::from(side), "from 1 to 32768 pixels")?;
+    }
+    Ok(())
+}

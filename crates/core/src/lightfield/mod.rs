@@ -1,0 +1,21 @@
+//! Light-field displays: what they are, the views that they need, what they can resolve, and what an eye in front of them sees.
+//!
+//! Two kinds: arrays of projectors behind a screen that scatters light vertically alone ([`ProjectorArray`], LF), and panels behind
+//! slanted lenses that are fed with quilts ([`QuiltDisplay`], [`Lenticular`]).
+//!
+//! **Display space** has its origin in the middle of the screen, +X right, +Y up, +Z out of the screen towards the viewers, metres.
+
+pub mod calibration;
+mod error;
+pub mod lenticular;
+pub mod observer;
+pub mod projectors;
+pub mod quilt;
+mod resolution;
+pub mod simulator;
+
+pub use error::DisplayError;
+pub use lenticular::Lenticular;
+pub use projectors::ProjectorArray;
+pub use quilt::QuiltDisplay;
+pub use resolution::{RESOLVED_LEVEL, Resolution};

@@ -1,0 +1,171 @@
+//! A projector is found from what its beams pass, and what remains is corrected by tables.
+
+use crate::scene::display;
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+use wheatstone_core::image::RgbImage;
+use wheatstone_core::lightfield::ProjectorArray;
+use wheatstone_core::lightfield::calibration::{ColorTable, Correspondence, Fit, GeometryWarp};
+use wheatstone_core::lightfield::projectors::{ImageRect, Projector};
+
+const SIZE: [u32; 2] = [320, 240];
+
+/// What a projector's beams pass at three depths, with an error of so many metres to each side.
+fn measured(projector: &Projector, error_m: f64) -> Vec<Correspondence> {
+    let mut found = Vec::new();
+    for z in [-0.1, 0.0, 0.15] {
+        for (i, j) in (0..6).flat_map(|j| (0..8).map(move |i| (i, j))) {
+            let pixel = DVec2::new(f64::from(i) * 45.0 + 2.5, f64::from(j) * 47.0 + 2.5);
+            let screen_m = projector.screen_m(pixel, SIZE).extend(0.0);
+            let emitter = projector.emitter();
+            let passed = emitter + (screen_m - emitter) * ((z - emitter.z) / -emitter.z);
+            // As good as random, and without a mean.
+            let phase = f64::from(i * 7 + j * 13) + 100.0 * z;
+            found.push(Correspondence {
+                pixel,
+                place_m: passed + error_m * DVec3::new((phase * 2.4).sin(), (phase * 3.7).cos(), 0.0),
+            });
+        }
+    }
+    found
+}
+
+fn most(a: &Projector, b: &Projector) -> f64 {
+    let numbers = |p: &Projector| {
+        let ImageRect { left_m, right_m, down_m, up_m } = p.image;
+        [p.emitter_m.to_vec(), vec![left_m, right_m, down_m, up_m]].concat()
+    };
+    numbers(a).iter().zip(numbers(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn displaced_projectors_are_found_mirrored_ones_with_them(index in 0_usize..96, moved in prop::array::uniform3(-0.05_f64..0.05), grown in -0.01_f64..0.01) {
+        let paper = ProjectorArray::of_paper();
+        let guess = paper.projectors()[index];
+        let [x, y, z] = guess.emitter_m;
+        let ImageRect { left_m, right_m, down_m, up_m } = guess.image;
+        let true_one = Projector {
+            emitter_m: [x + moved[0], y + moved[1], z + moved[2]],
+            image: ImageRect { left_m: left_m * (1.0 + grown), right_m: right_m + grown, down_m, up_m: up_m - grown },
+            ..guess
+        };
+        let fit = Fit::of(&guess, SIZE, &measured(&true_one, 0.0)).unwrap();
+        prop_assert!(most(&fit.projector, &true_one) < 1e-7, "{:?} {:?}", fit, true_one);
+        prop_assert!(fit.worst_m < 1e-8);
+        let reversed = |p: &Projector| p.image.left_m > p.image.right_m;
+        prop_assert_eq!(reversed(&fit.projector), reversed(&guess));
+        // Errors of a tenth of a millimetre leave a residual of as much, and an emitter that is nearly right.
+        let fit = Fit::of(&guess, SIZE, &measured(&true_one, 1e-4)).unwrap();
+        prop_assert!(fit.rms_m > 0.5e-4 && fit.rms_m < 1.1e-4 && fit.worst_m < 2e-4, "{:?}", fit);
+        prop_assert!(most(&fit.projector, &true_one) < 3e-3, "{:?} {:?}", fit, true_one);
+    }
+}
+
+#[test]
+fn a_mirrored_projector_is_what_a_mirror_shows() {
+    let aimed = Projector {
+        id: 3,
+        emitter_m: [0.2, 0.05, -1.0],
+        image: ImageRect { left_m: 0.4, right_m: 0.8, down_m: -0.15, up_m: 0.15 },
+    };
+    let seen = aimed.reflected(0.3, 4);
+    assert_eq!(seen.id, 4);
+    assert!((seen.emitter_m[0] - 0.4).abs() < 1e-12 && seen.emitter_m[2] == -1.0);
+    assert!((seen.image.left_m - 0.2).abs() < 1e-12 && (seen.image.right_m + 0.2).abs() < 1e-12);
+    assert!(most(&seen.reflected(0.3, 3), &aimed) < 1e-12);
+    for pixel in [DVec2::new(0.0, 0.0), DVec2::new(17.0, 200.0)] {
+        let (at, reflected) = (aimed.screen_m(pixel, SIZE), seen.screen_m(pixel, SIZE));
+        assert!((0.6 - at.x - reflected.x).abs() < 1e-12 && at.y == reflected.y);
+        assert!((seen.pixel(reflected, SIZE) - pixel).length() < 1e-9);
+    }
+}
+
+#[test]
+fn what_tells_too_little_gives_one_clear_error() {
+    let guess = display(8, 2.0, SIZE).projectors()[4];
+    let all = measured(&guess, 0.0);
+    let fault = |measured: &[Correspondence]| Fit::of(&guess, SIZE, measured).unwrap_err().to_string();
+    assert_eq!(fault(&all[..3]), "3 correspondences: at least 4 are needed");
+    assert_eq!(fault(&all[..48]), "the places do not tell where the emitter is: they must differ in z");
+    let one_row: Vec<_> = all.iter().copied().filter(|c| c.pixel.y < 10.0).collect();
+    assert!(
+        fault(&one_row).contains("image's top and bottom edges are: they must differ in their pixels' rows")
+    );
+    let one_column: Vec<_> = all.iter().copied().filter(|c| c.pixel.x < 10.0).collect();
+    assert!(fault(&one_column).contains("left and right edges are"));
+    let mut broken = all.clone();
+    broken[7].place_m.x = f64::NAN;
+    assert_eq!(fault(&broken), "correspondence 7 has a number that is not finite");
+}
+
+fn smooth() -> RgbImage {
+    let level = |i: u32| {
+        let (x, y) = (f64::from(i % 40), f64::from(i / 40));
+        [(x * 0.2).sin(), (y * 0.15).cos(), 0.3].map(|v| (0.5 + 0.4 * v) as f32)
+    };
+    RgbImage { width: 40, height: 30, rgb: (0..1200).map(level).collect() }
+}
+
+#[test]
+fn a_warp_undoes_a_distortion() {
+    let size = [40, 30];
+    // The lens of the projector shows what is at `p` at `p` moved by up to 2 pixels.
+    let distorted = |p: DVec2| p + DVec2::new((p.y * 0.1).sin(), (p.x * 0.08).cos()) * 2.0;
+    let ideal = smooth();
+    let warp = GeometryWarp::from_fn(41, 31, size, distorted);
+    let sent = warp.apply(&ideal);
+    let worst = (3..27_u32).flat_map(|y| (3..37_u32).map(move |x| (x, y))).map(|(x, y)| {
+        let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+        // What is shown at its distorted place is to be what the ideal picture has there.
+        let shown = sent.rgb[(y * 40 + x) as usize];
+        let wanted = ideal.sample(distorted(pixel)).unwrap_or([0.0; 3]);
+        (0..3).map(|c| (shown[c] - wanted[c]).abs()).fold(0.0, f32::max)
+    });
+    assert!(worst.fold(0.0, f32::max) < 0.01);
+    let identity = GeometryWarp::from_fn(2, 2, size, |p| p);
+    let same = identity.apply(&ideal);
+    assert!(same.rgb.iter().flatten().zip(ideal.rgb.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-6));
+    let away = GeometryWarp::from_fn(2, 2, size, |p| p + 100.0);
+    assert!(away.apply(&ideal).rgb.iter().flatten().all(|&level| level == 0.0));
+}
+
+#[test]
+fn tables_are_checked_and_applied() {
+    let nodes = vec![[0.0, 0.0]; 4];
+    assert_eq!(
+        GeometryWarp::new(1, 4, nodes.clone()).unwrap_err().to_string(),
+        "a warp of 1x4 nodes: at least 2x2 are needed"
+    );
+    assert_eq!(
+        GeometryWarp::new(2, 3, nodes.clone()).unwrap_err().to_string(),
+        "4 positions: 6 nodes need one each"
+    );
+    let mut broken = nodes.clone();
+    broken[2][1] = f64::INFINITY;
+    assert_eq!(
+        GeometryWarp::new(2, 2, broken).unwrap_err().to_string(),
+        "the position of node 2 is not finite"
+    );
+    let table = |green: Vec<f32>| ColorTable::new([vec![0.0, 1.0], green, vec![1.0, 0.0]]);
+    assert_eq!(
+        table(vec![0.5]).unwrap_err().to_string(),
+        "the green table has 1 entries: at least 2 are needed"
+    );
+    assert_eq!(
+        table(vec![0.0, 2.0]).unwrap_err().to_string(),
+        "entry 1 of the green table is 2: must be from 0 to 1"
+    );
+    assert!(table(vec![0.0, f32::NAN]).is_err());
+    let table = table(vec![0.0, 0.2, 1.0]).unwrap();
+    let corrected = table.corrected([0.25, 0.75, 0.25]);
+    assert!(
+        (corrected[0] - 0.25).abs() < 1e-6
+            && (corrected[1] - 0.6).abs() < 1e-6
+            && (corrected[2] - 0.75).abs() < 1e-6
+    );
+    assert_eq!(table.corrected([-1.0, 3.0, 1.0]), [0.0, 1.0, 0.0]);
+    let text = serde_json::to_string(&table).unwrap();
+    assert_eq!(serde_json::from_str::<ColorTable>(&text).unwrap().checked().unwrap(), table);
+}

@@ -1,0 +1,225 @@
+//! What eyes in front of displays see, against what there would be to see.
+
+use crate::scene::{Scene, byte_window, display};
+use glam::{DAffine3, DVec3};
+use wheatstone_core::image::RgbImage;
+use wheatstone_core::lightfield::quilt::{Model, Sampling};
+use wheatstone_core::lightfield::simulator::Eye;
+use wheatstone_core::lightfield::{Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_LEVEL};
+use wheatstone_core::metrics::compare;
+use wheatstone_core::phantom::Phantom;
+use wheatstone_core::reference::{Aids, Cast};
+use wheatstone_core::scene::Settings;
+use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
+use wheatstone_core::view::View;
+
+const SIZE: [u32; 2] = [80, 60];
+
+/// Translucent, blue to yellow: nothing is so sharp that its samples along rays show.
+fn soft() -> TransferFunction {
+    let color =
+        vec![ColorPoint { at: 0.0, rgb: [0.2, 0.3, 0.9] }, ColorPoint { at: 1.0, rgb: [1.0, 0.9, 0.6] }];
+    let opacity = vec![OpacityPoint { at: 0.05, alpha: 0.0 }, OpacityPoint { at: 1.0, alpha: 0.2 }];
+    TransferFunction::new(color, opacity).unwrap()
+}
+
+fn scene() -> Scene {
+    head(0.14)
+}
+
+fn head(side_m: f64) -> Scene {
+    Scene::new(&Phantom::SheppLogan.cube(64).unwrap(), side_m, &Settings::new(byte_window(), soft()))
+}
+
+fn over_black(casts: &[Cast]) -> Vec<RgbImage> {
+    casts.iter().map(|cast| cast.image.over_background([0.0; 3])).collect()
+}
+
+fn cast(scene: &Scene, views: &[View]) -> Vec<RgbImage> {
+    over_black(&scene.caster.cast(&scene.parameters, &Aids::default(), views))
+}
+
+/// DSSIM of what an eye sees of a display and of what it would see of the world.
+fn dssim_at(scene: &Scene, array: &ProjectorArray, images: &[RgbImage], eye_m: DVec3) -> f64 {
+    let eye = Eye::new(eye_m, SIZE).unwrap();
+    let seen = array.seen_from(&eye, images).unwrap();
+    let screen_size_m = array.description().screen_size_m;
+    let view = View { shaded_from: None, ..eye.view(screen_size_m, DAffine3::IDENTITY) };
+    let truth = cast(scene, &[view]).remove(0);
+    compare(&seen, &truth).unwrap().dssim()
+}
+
+#[test]
+fn at_the_virtual_viewers_place_the_world_is_seen_and_elsewhere_ever_less_so() {
+    let (scene, array) = (scene(), display(48, 1.2, SIZE));
+    let images = cast(&scene, &array.views(DAffine3::IDENTITY));
+    let viewer = array.description().viewer;
+    let at = |right_m: f64, up_m: f64, back_m: f64| {
+        dssim_at(
+            &scene,
+            &array,
+            &images,
+            DVec3::new(right_m, viewer.height_m + up_m, viewer.distance_m + back_m),
+        )
+    };
+    for right_m in [-0.12, -0.035, 0.0, 0.035, 0.12] {
+        let dssim = at(right_m, 0.0, 0.0);
+        assert!(dssim <= 0.02, "{right_m} m to the right: {dssim}");
+    }
+    for (towards, step_m) in [(DVec3::Y, 0.01), (DVec3::NEG_Y, 0.01), (DVec3::Z, 0.04)] {
+        let errors: Vec<f64> = (0..8)
+            .map(|i| {
+                let [x, y, z] = (towards * step_m * f64::from(i)).to_array();
+                at(x, y, z)
+            })
+            .collect();
+        let steps: Vec<f64> = errors.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        assert!(errors[7] > 3.0 * errors[0], "{errors:?}");
+        // It grows, and without jumps.
+        assert!(steps.iter().all(|&step| step > -0.0003 && step < 0.003), "{errors:?}");
+    }
+}
+
+#[test]
+fn from_any_height_a_display_of_projectors_looks_the_same() {
+    let (scene, array) = (scene(), display(24, 2.4, [40, 30]));
+    let images = cast(&scene, &array.views(DAffine3::IDENTITY));
+    let seen = |y: f64| array.seen_from(&Eye::new(DVec3::new(0.05, y, 0.6), SIZE).unwrap(), &images).unwrap();
+    assert_eq!(seen(0.0), seen(0.3));
+    let moved = array.seen_from(&Eye::new(DVec3::new(-0.05, 0.0, 0.6), SIZE).unwrap(), &images).unwrap();
+    assert!(compare(&moved, &seen(0.0)).unwrap().dssim() > 0.01);
+}
+
+#[test]
+fn all_of_a_white_screen_is_white_and_beyond_the_last_beam_it_is_dark() {
+    let array = display(48, 1.2, [16, 12]);
+    let white = vec![RgbImage { width: 16, height: 12, rgb: vec![[1.0; 3]; 16 * 12] }; 48];
+    let seen =
+        |x: f64| array.seen_from(&Eye::new(DVec3::new(x, 0.0, 0.6), [20, 15]).unwrap(), &white).unwrap();
+    assert!(seen(0.05).rgb.iter().flatten().all(|&level| (level - 1.0).abs() < 1e-6));
+    assert!(seen(2.0).rgb.iter().flatten().all(|&level| level == 0.0));
+}
+
+#[test]
+fn what_the_display_cannot_resolve_need_not_be_sampled() {
+    for phantom in [Phantom::Beetle, Phantom::MarschnerLobb] {
+        matched_resolution(phantom);
+    }
+}
+
+/// Casts a volume at the display's resolution: far fewer samples, and to an eye hardly another picture.
+fn matched_resolution(phantom: Phantom) {
+    let volume = phantom.cube(128).unwrap();
+    let scene = Scene::new(&volume, 0.2, &Settings::new(volume.full_window(), soft()));
+    // Deep: 10 cm before and behind the screen, where s(z) is several times the pixel.
+    let array = display(24, 2.4, SIZE);
+    let (resolution, views) = (array.resolution(), array.views(DAffine3::IDENTITY));
+    let levels = volume.coarser_levels();
+    let voxel_length_m = scene.parameters.voxel_length_m();
+    let (near_m, far_m) = views[0].depths_m(&scene.parameters.visible_corners_world());
+    let slabs = resolution.slabs(voxel_length_m, &(near_m..far_m), levels.len() + 1);
+    for slab in &slabs {
+        let ends = [slab.depths_m.start.max(near_m), slab.depths_m.end.min(far_m)];
+        let length_m = voxel_length_m * (slab.level as f64).exp2();
+        let middle_m = 0.5 * (ends[0] + ends[1]);
+        assert_eq!(resolution.level(middle_m, voxel_length_m, levels.len() + 1), slab.level);
+        let smallest_m = if ends[0] * ends[1] < 0.0 {
+            resolution.size_m(0.0)
+        } else {
+            resolution.size_m(ends[0]).min(resolution.size_m(ends[1]))
+        };
+        assert!(
+            slab.level == 0 || length_m <= smallest_m * (1.0 + 1e-9),
+            "voxels of {length_m} m where {smallest_m} m is resolved"
+        );
+    }
+    assert!(slabs.windows(2).all(|pair| pair[0].depths_m.end == pair[1].depths_m.start));
+    assert!(slabs.len() >= 3, "{slabs:?}");
+    assert_eq!(RESOLVED_LEVEL.pixels, 0.5_f64.sqrt());
+    let casters: Vec<_> = levels.iter().map(wheatstone_core::reference::Caster::new).collect();
+    let caster = |level: usize| if level == 0 { &scene.caster } else { &casters[level - 1] };
+    let full = scene.caster.cast(&scene.parameters, &Aids::default(), &views);
+    let matched: Vec<Cast> = views
+        .iter()
+        .map(|view| {
+            slabs.iter().fold(Cast::nothing(view.size), |front, slab| {
+                let parameters = scene.parameters.of_level(slab.level);
+                caster(slab.level).cast_behind(&parameters, &Aids::default(), &slab.part_of(view), front)
+            })
+        })
+        .collect();
+    let samples = |casts: &[Cast]| casts.iter().map(|cast| cast.samples).sum::<u64>() as f64;
+    let of_samples = samples(&matched) / samples(&full);
+    let viewer = array.description().viewer;
+    let eye_m = DVec3::new(0.0, viewer.height_m, viewer.distance_m);
+    // The truth as finely as the eye sees, then blurred as its pixels are: many rays in each pixel.
+    let fine = Eye::new(eye_m, SIZE.map(|side| 4 * side)).unwrap();
+    let truth = cast(&scene, &[fine.view(array.description().screen_size_m, DAffine3::IDENTITY)])
+        .remove(0)
+        .averaged(4);
+    let eye = Eye::new(eye_m, SIZE).unwrap();
+    let dssim = |casts: &[Cast]| {
+        compare(&array.seen_from(&eye, &over_black(casts)).unwrap(), &truth).unwrap().dssim()
+    };
+    let (of_full, of_matched) = (dssim(&full), dssim(&matched));
+    println!(
+        "{phantom}: {of_samples:.3} of the samples; DSSIM {of_full:.4} in full, {of_matched:.4} matched"
+    );
+    assert!(of_samples < 0.65, "{phantom}: {of_samples} of the samples");
+    assert!(of_matched - of_full <= 0.005, "{phantom}: {of_matched} instead of {of_full}");
+}
+
+fn quilt_display() -> QuiltDisplay {
+    QuiltDisplay { columns: 8, rows: 6, quilt_size_px: [8 * 60, 6 * 80], ..Model::Portrait.display() }
+}
+
+#[test]
+fn an_eye_before_the_lenses_sees_the_view_of_its_place() {
+    let display = quilt_display();
+    let scene = head(0.1);
+    let views = display.views(Sampling::Middles, DAffine3::IDENTITY);
+    let pictures = cast(&scene, &views);
+    for index in [0_usize, 13, 24, 47] {
+        let eye =
+            Eye::new(views[index].view_from_world.inverse().translation, display.tile_size_px()).unwrap();
+        let seen = display.seen_from(&eye, &pictures).unwrap();
+        let most = seen
+            .rgb
+            .iter()
+            .flatten()
+            .zip(pictures[index].rgb.iter().flatten())
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f32::max);
+        assert!(most < 1e-5, "view {index}: {most}");
+    }
+    let eye =
+        Eye::new(DVec3::new(0.02, 0.0, 1.2 * display.focal_distance_m), display.tile_size_px()).unwrap();
+    let truth = cast(&scene, &[eye.view(display.screen_size_m(), DAffine3::IDENTITY)]).remove(0);
+    let dssim = compare(&display.seen_from(&eye, &pictures).unwrap(), &truth).unwrap().dssim();
+    assert!(dssim < 0.02, "from further away: {dssim}");
+}
+
+#[test]
+fn through_real_lenses_much_the_same_is_seen() {
+    let display = quilt_display();
+    let calibration = r#"{"pitch":52.6,"slope":-7.08,"center":0.43,"DPI":324,"screenW":384,"screenH":512}"#;
+    let lenses = Lenticular::from_visual_json(calibration).unwrap();
+    let scene = head(0.1);
+    let pictures = cast(&scene, &display.views(Sampling::Middles, DAffine3::IDENTITY));
+    let picture = lenses.interlace(&display, &display.quilt(&pictures).unwrap()).unwrap();
+    let seen_at = |x_m: f64| {
+        let eye = Eye::new(DVec3::new(x_m, 0.0, display.focal_distance_m), display.tile_size_px()).unwrap();
+        (lenses.seen_from(&eye, &display, &picture).unwrap(), display.seen_from(&eye, &pictures).unwrap())
+    };
+    for x_m in [-0.05, 0.0, 0.07] {
+        let (through_lenses, ideally) = seen_at(x_m);
+        let dssim = compare(&through_lenses, &ideally).unwrap().dssim();
+        assert!(dssim < 0.02, "{x_m} m to the right: {dssim}");
+        let (other, _) = seen_at(-0.1);
+        let from_elsewhere = compare(&other, &ideally).unwrap().dssim();
+        assert!(
+            dssim < 0.8 * from_elsewhere,
+            "{x_m} m to the right: {dssim}, from elsewhere {from_elsewhere}"
+        );
+    }
+}
