@@ -4,7 +4,7 @@ use crate::view::{Projection, View};
 
 /// Width of what a pixel shows at a depth: `at_eye_m + per_metre · depth`, metres.
 ///
-/// What a light-field display resolves is `lightfield::Resolution`.
+/// What a light-field display resolves is [`crate::lightfield::Resolution`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
     /// At depth 0, metres.

@@ -38,7 +38,14 @@ pub(super) fn shade<C: Classify, L: Lanes>(
             let light = directional::<C, L>(context, token, position);
             as_dense(Vec3 { x: rgb.x * light.x, y: rgb.y * light.y, z: rgb.z * light.z })
         }
-        Shading::LitSphere { .. } => lit_sphere(context, token, ray, position, value, rgb, gradient()),
+        Shading::LitSphere { .. } => {
+            let gradient = gradient();
+            L::outlined(
+                token,
+                #[inline(always)]
+                || lit_sphere(context, token, ray, position, value, rgb, gradient),
+            )
+        }
     };
     match context.parameters.boundaries {
         None => shaded,

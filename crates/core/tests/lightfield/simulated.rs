@@ -162,9 +162,6 @@ fn matched_resolution(phantom: Phantom) {
         compare(&array.seen_from(&eye, &over_black(casts)).unwrap(), &truth).unwrap().dssim()
     };
     let (of_full, of_matched) = (dssim(&full), dssim(&matched));
-    println!(
-        "{phantom}: {of_samples:.3} of the samples; DSSIM {of_full:.4} in full, {of_matched:.4} matched"
-    );
     assert!(of_samples < 0.65, "{phantom}: {of_samples} of the samples");
     assert!(of_matched - of_full <= 0.005, "{phantom}: {of_matched} instead of {of_full}");
 }
