@@ -90,7 +90,7 @@ pub enum DisplayError {
         image: [u32; 2],
     },
     /// More pixels than are handled.
-    #[error("{field} are {count} in all: must be at most {most}")]
+    #[error("{field}: {count} in all, must be at most {most}")]
     TooManyPixels {
         /// Which pixels.
         field: &'static str,
@@ -138,11 +138,25 @@ pub(super) const LONGEST_M: f64 = 1000.0;
 /// Most pixels along a side of any picture.
 pub(super) const LONGEST_SIDE_PX: u32 = 32_768;
 
-/// The sides of a picture.
-pub(super) fn check_size_px(field: &str, size: [u32; 2]) -> Result<(), DisplayError> {
+/// Most pixels of a picture, or of all that a display needs at once: as floats they take 1.6 GB.
+pub(super) const MOST_PIXELS: u64 = 1 << 27;
+
+/// The sides of a picture, and how many pixels it has.
+pub(super) fn check_size_px(field: &'static str, size: [u32; 2]) -> Result<(), DisplayError> {
     for (axis, side) in size.into_iter().enumerate() {
         let is_kept = (1..=LONGEST_SIDE_PX).contains(&side);
         check(is_kept, format!("{field}[{axis}]"), f64::from(side), "from 1 to 32768 pixels")?;
     }
-    Ok(())
+    check_pixels(field, size, 1)
+}
+
+/// How many pixels so many pictures of a size have.
+pub(super) fn check_pixels(field: &'static str, size: [u32; 2], pictures: usize) -> Result<(), DisplayError> {
+    let [width, height] = size.map(u64::from);
+    let count = width * height * pictures as u64;
+    if count <= MOST_PIXELS {
+        Ok(())
+    } else {
+        Err(DisplayError::TooManyPixels { field, count, most: MOST_PIXELS })
+    }
 }

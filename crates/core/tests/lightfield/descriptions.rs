@@ -108,5 +108,8 @@ fn constructed_displays_are_checked_as_read_ones_are() {
         fault(|d| d.projectors[3].emitter_m[0] = f64::INFINITY).contains("projectors[3].emitter_m[0] is inf")
     );
     assert!(fault(|d| d.projectors.clear()).contains("projectors has 0 entries: must have from 1 to 4096"));
-    assert!(fault(|d| d.image_size_px = [32_768; 2]).contains("must be at most 1073741824"));
+    assert!(
+        fault(|d| d.image_size_px = [8192; 2])
+            .contains("the pixels of all projectors: 536870912 in all, must be at most 134217728")
+    );
 }

@@ -143,7 +143,11 @@ fn each_fault_of_a_description_is_named() {
         (fault("\"columns\":8,", ""), "missing field `columns`"),
         (
             fault("\"columns\":8", "\"columns\":4000000000"),
-            "the tiles of a quilt are 24000000000 in all: must be at most 1024",
+            "the tiles of a quilt: 24000000000 in all, must be at most 1024",
+        ),
+        (
+            fault("[3360,3360]", "[32768,32768]"),
+            "quilt_size_px: 1073741824 in all, must be at most 134217728",
         ),
         (fault("\"aspect\":0.75", "\"aspect\":0"), "aspect is 0: must be above 0.01 and below 100"),
         (fault("[3360,3360]", "[3360,5]"), "quilt_size_px[1] is 5: must be at least a pixel for each tile"),

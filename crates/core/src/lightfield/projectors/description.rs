@@ -1,6 +1,6 @@
 //! What is written of a display of projectors.
 
-use super::super::error::{check, check_length_m, check_size_px};
+use super::super::error::{check, check_length_m, check_pixels, check_size_px};
 use super::{DisplayError, Packing, Projector, VirtualViewer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -33,9 +33,6 @@ pub(super) const VERSION: u64 = 1;
 /// Most projectors of a display.
 const MOST_PROJECTORS: usize = 4096;
 
-/// Most pixels of all images.
-const MOST_PIXELS: u64 = 1 << 30;
-
 impl Description {
     pub(super) fn parse(text: &str) -> Result<Self, DisplayError> {
         Ok(serde_json::from_str(text)?)
@@ -60,12 +57,7 @@ impl Description {
         if !(1..=MOST_PROJECTORS).contains(&count) {
             return Err(DisplayError::Count { field: "projectors", count, expected: "from 1 to 4096" });
         }
-        let [width, height] = self.image_size_px.map(u64::from);
-        let pixels = width * height * count as u64;
-        if pixels > MOST_PIXELS {
-            let field = "the pixels of all projectors";
-            return Err(DisplayError::TooManyPixels { field, count: pixels, most: MOST_PIXELS });
-        }
+        check_pixels("the pixels of all projectors", self.image_size_px, count)?;
         let mut indices = BTreeMap::new();
         for (second, projector) in self.projectors.iter().enumerate() {
             projector.check(second)?;

@@ -1,5 +1,6 @@
 //! Eyes.
 
+use crate::lightfield::error::check_size_px;
 use crate::lightfield::quilt::screen_view;
 use crate::view::View;
 use glam::{DAffine3, DVec2, DVec3};
@@ -20,7 +21,7 @@ pub enum EyeError {
     #[error("an eye at {0}: must be in front of the screen, z above 0, and finite")]
     Place(DVec3),
     /// A picture without pixels, or with too many.
-    #[error("a picture of {}x{} pixels: each side must be from 1 to 32768", .0[0], .0[1])]
+    #[error("a picture of {}x{} pixels: each side must be from 1 to 32768, and all together at most 134217728", .0[0], .0[1])]
     Size([u32; 2]),
 }
 
@@ -33,9 +34,7 @@ impl Eye {
         if !(position_m.is_finite() && position_m.z > 0.0) {
             return Err(EyeError::Place(position_m));
         }
-        if size_px.into_iter().any(|side| !(1..=crate::lightfield::error::LONGEST_SIDE_PX).contains(&side)) {
-            return Err(EyeError::Size(size_px));
-        }
+        check_size_px("an eye's picture", size_px).map_err(|_| EyeError::Size(size_px))?;
         Ok(Self { position_m, size_px })
     }
 
