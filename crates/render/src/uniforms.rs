@@ -72,6 +72,7 @@ pub(crate) struct ViewUniform {
     pub(crate) band_stride: u32,
     pub(crate) first_column: u32,
     pub(crate) viewpoint: [f32; 4],
+    pub(crate) viewpoint_dx: [f32; 4],
     pub(crate) pair: PairUniform,
     pub(crate) padding: [u32; 3],
 }
@@ -217,6 +218,7 @@ impl ViewUniform {
             band_stride: 1,
             first_column: 0,
             viewpoint: rays.viewpoint.as_vec4().to_array(),
+            viewpoint_dx: rays.viewpoint_dx.as_vec3().extend(0.0).to_array(),
             pair: PairUniform::zeroed(),
             padding: [0; 3],
         }
@@ -306,6 +308,7 @@ mod tests {
                 band_stride,
                 first_column,
                 viewpoint,
+                viewpoint_dx,
                 pair,
             ]
         );

@@ -74,10 +74,10 @@ fn ray_through(at: vec2f) -> Ray {
     ray.first = origin + direction * ray.first_depth_m;
     ray.step = direction * ray.step_depth_m;
     ray.step_length = ray.step_depth_m * metres_to_voxel_lengths;
-    let w = view.viewpoint.w;
-    ray.to_viewpoint = parameters.metric_from_texture * (view.viewpoint.xyz - w * origin)
-        - metric_direction * (w * ray.first_depth_m);
-    ray.to_viewpoint_step = metric_direction * (-w * ray.step_depth_m);
+    let viewpoint = view.viewpoint + at.x * view.viewpoint_dx;
+    ray.to_viewpoint = parameters.metric_from_texture * (viewpoint.xyz - viewpoint.w * origin)
+        - metric_direction * (viewpoint.w * ray.first_depth_m);
+    ray.to_viewpoint_step = metric_direction * (-viewpoint.w * ray.step_depth_m);
     return ray;
 }
 

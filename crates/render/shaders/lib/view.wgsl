@@ -35,8 +35,10 @@ struct View {
     band_stride: u32,
     // First column of the piece that is cast.
     first_column: u32,
-    // Where the picture is shaded from, homogeneous: a point (w = 1) or a vector that points there (w = 0).
+    // Where the rays of the picture's left edge are shaded from, homogeneous: a point (w = 1) or a vector that points there (w = 0).
     viewpoint: vec4f,
+    // Change of that per pixel to the right.
+    viewpoint_dx: vec4f,
     // What the view has in common with the one that is derived from its rays; zeros where none is.
     //
     // Not in a buffer of its own: Mesa 22's software Vulkan crashes on branches and loops that depend on a uniform buffer after

@@ -15,6 +15,8 @@ mod live;
 mod novel_view;
 mod pairs;
 mod parity;
+mod projectors;
+mod report;
 mod scene;
 mod segments;
 mod skip;
