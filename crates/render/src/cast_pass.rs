@@ -35,6 +35,7 @@ pub(crate) struct Variant {
     accumulator: &'static str,
     classifier: &'static str,
     shading: &'static str,
+    boundaries: &'static str,
     gradient: &'static str,
     volume: &'static str,
     skip: &'static str,
@@ -49,17 +50,7 @@ pub(crate) struct Variant {
 
 impl Variant {
     /// The kernel for some parameters.
-    ///
-    /// # Errors
-    /// [`GpuError::CpuOnly`] if none is.
-    pub(crate) fn of(
-        parameters: &CastParameters,
-        sources: &Sources<'_>,
-        tiles: Tiles,
-    ) -> Result<Self, GpuError> {
-        if parameters.boundaries.is_some() {
-            return Err(GpuError::CpuOnly { setting: "boundary enhancement" });
-        }
+    pub(crate) fn of(parameters: &CastParameters, sources: &Sources<'_>, tiles: Tiles) -> Self {
         let (accumulator, is_shaded) = match parameters.mode {
             Mode::Composite => (COMPOSITE, true),
             Mode::Mip => ("lib/accumulate_mip", false),
@@ -69,7 +60,7 @@ impl Variant {
             Mode::Isosurface { .. } => (FIRST_HIT, true),
         };
         let is_quads = sources.volume.format() == TexelFormat::Rgba8UnormQuads;
-        Ok(Self {
+        Self {
             accumulator,
             classifier: match parameters.classifier {
                 Classifier::Value => "lib/classify_value",
@@ -84,10 +75,9 @@ impl Variant {
                 Shading::Shadow => "lib/shade_shadow",
                 Shading::Ambient => "lib/shade_ambient",
                 Shading::Directional { .. } => "lib/shade_directional",
-                Shading::LitSphere { .. } => {
-                    return Err(GpuError::CpuOnly { setting: "shading by lit spheres" });
-                }
+                Shading::LitSphere { .. } => "lib/shade_lit_sphere",
             },
+            boundaries: if parameters.boundaries.is_some() { BOUNDARIES_ENHANCED } else { BOUNDARIES_PLAIN },
             gradient: match parameters.gradient {
                 GradientMethod::CentralDifferences if is_quads => "lib/gradient_central_quads",
                 GradientMethod::CentralDifferences => "lib/gradient_central",
@@ -106,7 +96,7 @@ impl Variant {
             record: RECORD_NONE,
             front: FRONT_NONE,
             start: START_AT_ONCE,
-        })
+        }
     }
 
     /// The kernel of a composite that goes on behind what its target holds: it leaves pixels as they are whose rays miss.
@@ -152,7 +142,8 @@ impl Variant {
         Self { tiles: TILES_LISTED, ..self }
     }
 
-    /// Every kernel that parameters can ask for.
+    /// Every kernel that parameters can ask for. What enhances boundaries has to do with shading only where that takes a gradient as
+    /// well: one that does and one that does not stand for all.
     #[cfg(test)]
     fn all() -> Vec<Self> {
         let gradients = ["lib/gradient_central", "lib/gradient_tetrahedron"];
@@ -163,6 +154,7 @@ impl Variant {
             "lib/shade_shadow",
             "lib/shade_ambient",
             "lib/shade_directional",
+            "lib/shade_lit_sphere",
         ];
         let by_distance = "lib/blocks_by_distance";
         let skips = [(SKIP_NONE, by_distance), (SKIP_BLOCKS, by_distance)];
@@ -183,6 +175,7 @@ impl Variant {
                             accumulator: COMPOSITE,
                             classifier,
                             shading,
+                            boundaries: BOUNDARIES_PLAIN,
                             gradient,
                             volume,
                             skip,
@@ -200,6 +193,7 @@ impl Variant {
                         accumulator,
                         classifier,
                         shading,
+                        boundaries: BOUNDARIES_PLAIN,
                         gradient,
                         volume,
                         skip,
@@ -221,6 +215,7 @@ impl Variant {
                     accumulator,
                     classifier,
                     shading,
+                    boundaries: BOUNDARIES_PLAIN,
                     gradient: gradients[0],
                     volume,
                     skip,
@@ -241,6 +236,16 @@ impl Variant {
             .map(|variant| Self { magnitude: MAGNITUDE_MAP, ..*variant })
             .collect();
         all.extend(with_map);
+        let is_composite = |variant: &&Self| variant.accumulator == COMPOSITE;
+        let is_enhanced = |variant: &&Self| {
+            is_composite(variant) && ["lib/shade_none", "lib/shade_lit_sphere"].contains(&variant.shading)
+        };
+        let enhanced: Vec<Self> = all
+            .iter()
+            .filter(is_enhanced)
+            .map(|variant| Self { boundaries: BOUNDARIES_ENHANCED, ..*variant })
+            .collect();
+        all.extend(enhanced);
         let on_quads = |variant: &Self| Self {
             volume: VOLUME_QUADS,
             tiles: TILES_LISTED,
@@ -258,12 +263,10 @@ impl Variant {
         };
         let leaping: Vec<Self> =
             all.iter().filter(is_leaping).map(|variant| variant.leaping(Tiles::Listed)).collect();
-        let is_composite = |variant: &&Self| {
-            variant.accumulator == COMPOSITE
-                && variant.gradient != gradients[1]
-                && variant.tiles == TILES_LISTED
+        let is_listed_composite = |variant: &&Self| {
+            is_composite(variant) && variant.gradient != gradients[1] && variant.tiles == TILES_LISTED
         };
-        let composites: Vec<Self> = all.iter().filter(is_composite).copied().collect();
+        let composites: Vec<Self> = all.iter().filter(is_listed_composite).copied().collect();
         all.extend(composites.iter().map(|variant| variant.with_layers()));
         all.extend(composites.iter().map(|variant| variant.behind()));
         all.extend(leaping);
@@ -272,7 +275,7 @@ impl Variant {
         all
     }
 
-    fn choices(&self) -> [(&'static str, &'static str); 15] {
+    fn choices(&self) -> [(&'static str, &'static str); 16] {
         let (cast_segments, join) = match self.accumulator {
             XRAY => ("lib/cast_integrals", "lib/join_sum"),
             _ => ("lib/cast_segments", "lib/join_over"),
@@ -281,6 +284,7 @@ impl Variant {
             ("lib/accumulate", self.accumulator),
             ("lib/classify", self.classifier),
             ("lib/shade", self.shading),
+            ("lib/boundaries", self.boundaries),
             ("lib/gradient", self.gradient),
             ("lib/volume", self.volume),
             ("lib/skip", self.skip),
@@ -297,6 +301,8 @@ impl Variant {
     }
 }
 
+const BOUNDARIES_PLAIN: &str = "lib/boundaries_plain";
+const BOUNDARIES_ENHANCED: &str = "lib/boundaries_enhanced";
 const VOLUME_FILTERED: &str = "lib/volume_filtered";
 const VOLUME_QUADS: &str = "lib/volume_quads";
 const MAGNITUDE_MAP: &str = "lib/magnitude_map";
@@ -353,7 +359,8 @@ pub(crate) fn iterations_of_shading(parameters: &CastParameters, leap: &Leap<'_>
 pub(crate) fn reads_per_sample(parameters: &CastParameters) -> u32 {
     let classifier_reads =
         if parameters.classifier == Classifier::ValueGradient { parameters.gradient.samples() } else { 0 };
-    1 + classifier_reads + parameters.shading_samples() * (1 + classifier_reads)
+    let boundary_reads = parameters.boundaries.map_or(0, |_| parameters.gradient.samples());
+    1 + classifier_reads + boundary_reads + parameters.shading_samples() * (1 + classifier_reads)
 }
 
 /// Pipelines of a kernel's variants, built when first asked for.
@@ -476,7 +483,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 692);
+        assert_eq!(variants.len(), 1048);
     }
 
     #[test]
@@ -492,6 +499,7 @@ mod tests {
     #[test]
     fn constants_are_those_of_the_reference() {
         use wheatstone_core::cast;
+        use wheatstone_core::lit_sphere::LIT_SPHERE_SIDE;
         use wheatstone_core::transfer::OPAQUE_LOG2;
         let expected = [
             ("lib/shade_phong", "AMBIENT", cast::PHONG[0]),
@@ -501,6 +509,7 @@ mod tests {
             ("lib/shade_phong", "FLAT_SQUARED", cast::FLAT_SQUARED),
             ("lib/shade_shadow", "SHADOW_SAMPLES", SHADOW_SAMPLES as f32),
             ("lib/shade_shadow", "SHADING_STEP", cast::SHADING_STEP),
+            ("lib/shade_lit_sphere", "LIT_SPHERE_SIDE", LIT_SPHERE_SIDE as f32),
             ("lib/shade_ambient", "AMBIENT_RADIUS", cast::AMBIENT_RADIUS),
             ("lib/record_layers", "DIVIDED_PX", wheatstone_core::warp::DIVIDED_PX as f32),
             ("lib/accumulate_composite", "FIRST_HIT_ALPHA", cast::FIRST_HIT_ALPHA),

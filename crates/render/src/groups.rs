@@ -16,7 +16,7 @@ pub(crate) const LAYERED_RAY_BYTES: u64 = 80;
 pub(crate) struct GroupLayouts {
     /// Parameters and view.
     pub(crate) frame: wgpu::BindGroupLayout,
-    /// Volume, tables and maps.
+    /// Volume, tables, maps and lit spheres.
     pub(crate) volume: wgpu::BindGroupLayout,
     /// Picture, rays under way, listed tiles, layers, the picture in front, where rays start and what they see first.
     pub(crate) target: wgpu::BindGroupLayout,
@@ -35,6 +35,7 @@ impl GroupLayouts {
             texture_2d,
             buffer(wgpu::BufferBindingType::Uniform, 16 * LUT_1D_ENTRIES as u64),
             texture_3d(wgpu::TextureSampleType::Uint),
+            texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
             texture_3d(wgpu::TextureSampleType::Float { filterable: true }),
         ];
         let picture = wgpu::BindingType::Texture {

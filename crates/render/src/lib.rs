@@ -13,6 +13,7 @@ mod kernel;
 mod layers;
 mod layers_error;
 mod leap;
+mod lit_spheres;
 pub mod live;
 #[cfg(test)]
 mod noop_device;

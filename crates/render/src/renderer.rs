@@ -8,6 +8,7 @@ use crate::gradient_map::GpuGradientMap;
 use crate::groups::{Bindings, GroupLayouts, RAY_STATE_BYTES, bind};
 use crate::layers_error::LayersError;
 use crate::leap::{self, Leap};
+use crate::lit_spheres;
 use crate::pacer::{BAND_ROWS, Pacer, band_samples, fitting_bands, sample_limit, spreading_stride};
 use crate::piece::Picture;
 use crate::squares::Squares;
@@ -189,7 +190,7 @@ impl Renderer {
     ) -> Result<Prepared, GpuError> {
         let listing = Listing::for_cast(gpu, &parameters, &sources.leap);
         let tiles = if listing.is_some() { Tiles::Listed } else { Tiles::All };
-        let variant = Variant::of(&parameters, sources, tiles)?;
+        let variant = Variant::of(&parameters, sources, tiles);
         self.casts.pipeline(gpu, variant)?;
         let Sources { volume, gradient_map, leap } = sources;
         let iterations_per_sample = cast_pass::iterations_per_sample(&parameters, leap);
@@ -214,6 +215,8 @@ impl Renderer {
         let lut_1d = init_buffer(gpu, "lut", bytemuck::cast_slice(&lut_1d), wgpu::BufferUsages::UNIFORM);
         let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
         let leap_texture = leap.texture();
+        let styles = &parameters.lit_spheres;
+        let lit_spheres = (!styles.is_empty()).then(|| lit_spheres::texture(gpu, styles));
         let volume = bind(
             &gpu.device,
             &self.groups.volume,
@@ -224,6 +227,7 @@ impl Renderer {
                 lut_1d.as_entire_binding(),
                 wgpu::BindingResource::TextureView(leap_texture.as_ref().unwrap_or(&self.no_map)),
                 wgpu::BindingResource::TextureView(gradient_map.map_or(&volume.texture, |map| &map.view)),
+                wgpu::BindingResource::TextureView(lit_spheres.as_ref().unwrap_or(&volume.texture)),
             ],
         );
         gpu.check()?;

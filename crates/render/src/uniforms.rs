@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat3, Vec3};
 use std::ops::Range;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::scene::MAX_DIRECTIONS;
+use wheatstone_core::scene::{BoundaryEnhancement, MAX_DIRECTIONS};
 use wheatstone_core::stereo::{Epipolar, SlabRange, Slabs};
 use wheatstone_core::view::{RayField, View};
 
@@ -46,7 +46,10 @@ pub(crate) struct CastUniform {
     pub(crate) magnitude_scale: f32,
     pub(crate) direction_count: u32,
     pub(crate) layer_count: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) boundary_inside: f32,
+    pub(crate) boundary_gain: f32,
+    pub(crate) boundary_exponent: f32,
+    pub(crate) padding: [u32; 3],
     pub(crate) layer_thresholds: [f32; 4],
     pub(crate) directions: [[f32; 4]; MAX_DIRECTIONS as usize],
 }
@@ -127,6 +130,9 @@ impl PairUniform {
 /// An opacity that no ray reaches.
 const NEVER_PASSED: f32 = 2.0;
 
+/// Boundaries as they are.
+const AS_DENSE: BoundaryEnhancement = BoundaryEnhancement { inside: 1.0, gain: 0.0, exponent: 1 };
+
 impl CastUniform {
     /// The same for a cast that keeps layers between thresholds.
     pub(crate) fn with_layers(self, thresholds: &[f32]) -> Self {
@@ -149,6 +155,7 @@ impl CastUniform {
         for (slot, direction) in directions.iter_mut().zip(&parameters.directions) {
             *slot = direction.extend(0.0).to_array();
         }
+        let boundaries = parameters.boundaries.unwrap_or(AS_DENSE);
         let (visible_lo, visible_hi) = parameters.lut.visible();
         Self {
             dims: dims.map(|side| side as f32),
@@ -178,7 +185,10 @@ impl CastUniform {
             magnitude_scale,
             direction_count: parameters.directions.len() as u32,
             layer_count: 0,
-            padding: [0; 2],
+            boundary_inside: boundaries.inside,
+            boundary_gain: boundaries.gain,
+            boundary_exponent: boundaries.exponent.max(1) as f32,
+            padding: [0; 3],
             layer_thresholds: [NEVER_PASSED; 4],
             directions,
         }
@@ -278,6 +288,9 @@ mod tests {
                 magnitude_scale,
                 direction_count,
                 layer_count,
+                boundary_inside,
+                boundary_gain,
+                boundary_exponent,
                 layer_thresholds,
                 directions,
             ]

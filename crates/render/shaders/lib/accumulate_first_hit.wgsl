@@ -77,7 +77,7 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
     let index = 0.5 * (lo + hi);
     let position = ray_at(ray, index);
     let classified = classify(position, parameters.isovalue, parameters.isovalue);
-    state.color = shade(ray, position + lift(classified.gradient), classified);
+    state.color = shade(ray, position + lift(classified.gradient), parameters.isovalue, classified).rgb;
     state.depth_m = ray_depth_m(ray, index);
     record_surface(state.depth_m);
     return state;

@@ -54,6 +54,10 @@ struct CastParameters {
     direction_count: u32,
     // Layers of emission and absorption that are kept of each ray at most.
     layer_count: u32,
+    // What the density is multiplied by where boundaries are enhanced: inside + gain * |gradient|^exponent.
+    boundary_inside: f32,
+    boundary_gain: f32,
+    boundary_exponent: f32,
     // Opacities at which they end; above 1 where there are none.
     layer_thresholds: vec4f,
     // Unit directions, metric space; their absolute components are the light's colour.

@@ -1,12 +1,11 @@
 import package::lib::cast_parameters::{parameters};
 import package::lib::classify::{VALUE_OFFSET, may_be_visible};
-import package::lib::composite::{SEARCHES, blend};
+import package::lib::composite::{BLENDING_IS_DEAR, SEARCHES, blend};
 import package::lib::join::{join};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, RayState, STRETCH};
 import package::lib::segment_sink::{SegmentPlace, put_segment};
 import package::lib::segmented_ray::{SegmentedRay, is_spent, leaps, stretches};
-import package::lib::shade::{SHADING_IS_DEAR};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::slabs::{end_of_slab, slab_at};
 import package::lib::splat::{splat};
@@ -88,12 +87,12 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
         }
         // Neighbouring rays enter slabs at other samples: a stretch ends with its slab, so that those in lockstep enter
         // the next together; but if samples are shaded, waiting for each other's last ones costs more.
-        while !SHADING_IS_DEAR && under_way.next >= under_way.slab_end {
+        while !BLENDING_IS_DEAR && under_way.next >= under_way.slab_end {
             under_way = enter_slab(ray, place, under_way);
         }
         let stretch_begin = under_way.next;
         var stretch_end = min(stretch_begin + STRETCH, run_end);
-        if !SHADING_IS_DEAR {
+        if !BLENDING_IS_DEAR {
             stretch_end = min(stretch_end, under_way.slab_end);
         }
         while under_way.next < stretch_end {
@@ -108,7 +107,7 @@ fn cast_segments(ray: Ray, furthest: i32, place: SegmentPlace, before: Segmented
                 under_way.segment.scalar = value;
                 under_way.next++;
             }
-            while SHADING_IS_DEAR && is_found && under_way.next >= under_way.slab_end {
+            while BLENDING_IS_DEAR && is_found && under_way.next >= under_way.slab_end {
                 under_way = enter_slab(ray, place, under_way);
             }
             if is_found {

@@ -1,14 +1,21 @@
+import package::lib::boundaries::{BOUNDARIES_TAKE_GRADIENT, at_boundary};
 import package::lib::cast_parameters::{parameters};
-import package::lib::classify::{CLASSIFIER_IS_DEAR, VALUE_OFFSET, classify};
+import package::lib::classify::{CLASSIFIER_HAS_GRADIENT, CLASSIFIER_IS_DEAR, VALUE_OFFSET, classify};
+import package::lib::gradient::{gradient_at};
 import package::lib::ray::{Ray, ray_at, ray_depth_m};
 import package::lib::ray_state::{FIRST_HIT_ALPHA, NOTHING_HIT, Pixel, RayState, new_ray_state, pixel_of};
-import package::lib::shade::{SHADING_IS_DEAR, shade};
+import package::lib::shade::{SHADING_IS_DEAR, SHADING_TAKES_GRADIENT, shade};
 import package::lib::skip::{RUNS_ARE_DENSE};
 import package::lib::volume::{value_at};
 
+const BLENDING_TAKES_GRADIENT = SHADING_TAKES_GRADIENT || BOUNDARIES_TAKE_GRADIENT;
+
+// Whether more is asked for a visible sample than the table.
+const BLENDING_IS_DEAR = SHADING_IS_DEAR || BOUNDARIES_TAKE_GRADIENT;
+
 // Whether to search for the next visible sample before blending it: a driver that runs both sides of every branch
 // (software Vulkan) then blends no other. Not worth it where most are visible and blending is cheap.
-const SEARCHES = CLASSIFIER_IS_DEAR || SHADING_IS_DEAR || !RUNS_ARE_DENSE;
+const SEARCHES = CLASSIFIER_IS_DEAR || BLENDING_IS_DEAR || !RUNS_ARE_DENSE;
 
 // `scalar` holds the value of the sample before, where the classifier asks for it.
 fn start_ray(ray: Ray) -> RayState {
@@ -22,10 +29,13 @@ fn start_ray(ray: Ray) -> RayState {
 fn blend(ray: Ray, i: u32, value: f32, before: RayState) -> RayState {
     var state = before;
     let position = ray_at(ray, f32(i));
-    let classified = classify(position, value, state.scalar);
-    let step_transmittance = exp2(classified.entry.w * ray.step_length);
-    let rgb = shade(ray, position, classified);
-    state.color += rgb * ((1.0 - step_transmittance) * state.transmittance);
+    var classified = classify(position, value, state.scalar);
+    if BLENDING_TAKES_GRADIENT && !CLASSIFIER_HAS_GRADIENT {
+        classified.gradient = gradient_at(position);
+    }
+    let lit = shade(ray, position, value, classified);
+    let step_transmittance = exp2(at_boundary(lit.w, classified.gradient) * ray.step_length);
+    state.color += lit.rgb * ((1.0 - step_transmittance) * state.transmittance);
     state.transmittance *= step_transmittance;
     if state.depth_m == NOTHING_HIT && state.transmittance <= 1.0 - FIRST_HIT_ALPHA {
         state.depth_m = ray_depth_m(ray, f32(i));

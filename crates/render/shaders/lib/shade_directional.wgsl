@@ -5,8 +5,10 @@ import package::lib::shading_ray::{SHADING_STEP, log2_transmittance_of_four};
 
 const SHADING_IS_DEAR = true;
 
+const SHADING_TAKES_GRADIENT = false;
+
 // Coloured light from each direction, traced for 4 steps (SP Fig. 9), so weighted that no occlusion is white.
-fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
+fn shade(ray: Ray, position: vec3f, value: f32, classified: Classified) -> vec4f {
     var lit = vec3f(0.0);
     var unoccluded = vec3f(0.0);
     // Software Vulkan compiles a kernel anew for each dispatch where a uniform alone ends a loop; a place that no sample has
@@ -20,5 +22,5 @@ fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
         unoccluded += abs(direction);
     }
     let share = select(lit / max(unoccluded, vec3f(1e-6)), vec3f(1.0), count == 0u);
-    return classified.entry.rgb * share;
+    return vec4f(classified.entry.rgb * share, classified.entry.w);
 }

@@ -3,7 +3,9 @@ import package::lib::ray::{Ray};
 
 const SHADING_IS_DEAR = false;
 
-// The colour as it is.
-fn shade(ray: Ray, position: vec3f, classified: Classified) -> vec3f {
-    return classified.entry.rgb;
+const SHADING_TAKES_GRADIENT = false;
+
+// Colour and log2 transmittance of one voxel length as they are.
+fn shade(ray: Ray, position: vec3f, value: f32, classified: Classified) -> vec4f {
+    return classified.entry;
 }

@@ -78,12 +78,6 @@ pub enum GpuError {
         /// Largest texture side.
         allowed_side: u32,
     },
-    /// A setting that no kernel is for.
-    #[error("{setting} is cast on the CPU alone")]
-    CpuOnly {
-        /// Which setting.
-        setting: &'static str,
-    },
     /// A picture exceeds the device's largest texture.
     #[error("picture of {width}x{height} pixels: this device allows sides of 1 to {allowed}")]
     PictureSize {

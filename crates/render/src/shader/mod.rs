@@ -143,8 +143,8 @@ mod tests {
 
     #[test]
     fn a_slot_without_a_choice_is_missing() {
-        let error = compose("lib/shade_phong", &[]).unwrap_err();
-        assert!(matches!(error, ComposeError::Missing { path, .. } if path == "lib/classify"));
+        let error = compose("lib/gradient_central", &[]).unwrap_err();
+        assert!(matches!(error, ComposeError::Missing { path, .. } if path == "lib/volume"));
     }
 
     #[test]

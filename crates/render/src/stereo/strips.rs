@@ -308,6 +308,8 @@ mod tests {
             ("lib/classify", "lib/classify_value"),
             ("lib/record", "lib/record_none"),
             ("lib/shade", "lib/shade_none"),
+            ("lib/boundaries", "lib/boundaries_plain"),
+            ("lib/gradient", "lib/gradient_central"),
             ("lib/skip", "lib/skip_none"),
             ("lib/volume", "lib/volume_filtered"),
         ];

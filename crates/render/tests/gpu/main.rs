@@ -23,6 +23,7 @@ mod skip;
 mod stereo;
 mod stereo_forms;
 mod stereo_repair;
+mod styles;
 mod targets;
 mod tolerance;
 mod upload;

@@ -2,11 +2,12 @@
 //! and sample counts are the reference's.
 
 use crate::device::on_device;
-use crate::report::{Case, Report};
+use crate::report::{Case, Report, check};
 use crate::scene::*;
 use glam::{DAffine3, DVec3, Vec3};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
+use wheatstone_core::lit_sphere::Style;
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Aids, Caster, HeldGradientMap};
 use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Light, Mode, Settings, Shading};
@@ -14,17 +15,6 @@ use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::Rig;
 use wheatstone_core::volume::{StorageKind, Volume, VoxelType, Window};
 use wheatstone_render::{GpuGradientMap, GpuVolume, Leap, Sources, TexelFormat};
-
-/// Checks a list of cases of one volume.
-fn check(group: &str, volume: &Volume, cases: Vec<Case>) {
-    on_device(|gpu, renderer| {
-        let mut report = Report::default();
-        for case in &cases {
-            report.run(gpu, renderer, volume, case);
-        }
-        report.finish(group);
-    });
-}
 
 const DIMS: [usize; 3] = [33, 28, 24];
 
@@ -63,6 +53,7 @@ fn modes_shadings_and_classifiers() {
         Shading::Shadow,
         Shading::Ambient,
         Shading::Directional { directions: 4 },
+        Shading::LitSphere { low: Style::Metal, high: Style::Glass },
     ];
     let mut cases = Vec::new();
     for shading in shadings {

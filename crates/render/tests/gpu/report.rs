@@ -1,5 +1,6 @@
 //! How the GPU's pictures compare with the reference's: colours, depths and sample counts.
 
+use crate::device::on_device;
 use crate::scene::*;
 use crate::tolerance;
 use wheatstone_core::cast::CastParameters;
@@ -85,4 +86,15 @@ impl Report {
         );
         assert!(self.cases > 0 && self.failures.is_empty(), "{group}:\n{}", self.failures.join("\n"));
     }
+}
+
+/// Checks a list of cases of one volume.
+pub(crate) fn check(group: &str, volume: &Volume, cases: Vec<Case>) {
+    on_device(|gpu, renderer| {
+        let mut report = Report::default();
+        for case in &cases {
+            report.run(gpu, renderer, volume, case);
+        }
+        report.finish(group);
+    });
 }
