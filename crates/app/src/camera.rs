@@ -6,7 +6,11 @@ use crate::spec;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use wheatstone_core::image::{Image, RgbImage};
-use wheatstone_core::view::{AnatomicalDirection, Frustum, Orbit, OrthographicBox, Projection, Rig, View};
+use wheatstone_core::scene::Placement;
+use wheatstone_core::view::{
+    AnatomicalDirection, Frustum, Orbit, OrthographicBox, Projection, Rig, View, world_from_patient,
+};
+use wheatstone_core::volume::Volume;
 
 /// Distance of the default camera, metres: the DM test camera's √3.
 const DEFAULT_DISTANCE: &str = "1.7320508";
@@ -19,13 +23,8 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = spec::picture_size)]
     pub(crate) size: [u32; 2],
 
-    /// Turn of the eye about the vertical axis, degrees.
-    #[arg(long, value_name = "DEG", default_value = "0", value_parser = spec::within(-36000.0..=36000.0), allow_negative_numbers = true)]
-    pub(crate) azimuth: f64,
-
-    /// Height of the eye above the horizon, degrees.
-    #[arg(long, value_name = "DEG", default_value = "0", value_parser = spec::within(-90.0..=90.0), allow_negative_numbers = true)]
-    pub(crate) elevation: f64,
+    #[command(flatten)]
+    pub(crate) aim: AimArgs,
 
     /// Distance of the eye from the volume's centre, metres.
     #[arg(long, value_name = "M", default_value = DEFAULT_DISTANCE, value_parser = spec::within(0.0..=1000.0), allow_negative_numbers = true)]
@@ -39,10 +38,6 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "HEIGHT_M", value_parser = spec::within(0.001..=1000.0), allow_negative_numbers = true, conflicts_with = "fov")]
     pub(crate) orthographic: Option<f64>,
 
-    /// Which patient direction points up in the picture.
-    #[arg(long, value_enum, ignore_case = true, default_value_t = Up::S)]
-    pub(crate) up: Up,
-
     /// One picture for one eye, or for two: the left eye's on the left, on top, in red, or in turns with the right eye's.
     #[arg(long, value_enum, default_value_t = Stereo::None)]
     pub(crate) stereo: Stereo,
@@ -54,6 +49,22 @@ pub(crate) struct CameraArgs {
     /// Depth that both eyes see at the same place of their pictures, metres.
     #[arg(long, value_name = "M|inf", default_value = "inf", value_parser = spec::convergence, allow_negative_numbers = true)]
     pub(crate) convergence: f64,
+}
+
+/// From which side the volume is seen.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct AimArgs {
+    /// Turn of the eye about the vertical axis, degrees.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = spec::within(-36000.0..=36000.0), allow_negative_numbers = true)]
+    pub(crate) azimuth: f64,
+
+    /// Height of the eye above the horizon, degrees.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = spec::within(-90.0..=90.0), allow_negative_numbers = true)]
+    pub(crate) elevation: f64,
+
+    /// Which patient direction points up in the picture.
+    #[arg(long, value_enum, ignore_case = true, default_value_t = Up::S)]
+    pub(crate) up: Up,
 }
 
 /// A patient direction by its letter.
@@ -122,6 +133,22 @@ impl Stereo {
     }
 }
 
+impl AimArgs {
+    /// Where the eye is at a distance, turned by a further azimuth.
+    pub(crate) fn orbit(&self, turn_deg: f64, distance_m: f64) -> Orbit {
+        Orbit {
+            azimuth_rad: (self.azimuth + turn_deg).to_radians(),
+            elevation_rad: self.elevation.to_radians(),
+            distance_m,
+        }
+    }
+
+    /// Where a volume stands in the world: its longest side is 1 m, its centre the origin.
+    pub(crate) fn placement(&self, volume: &Volume) -> Placement {
+        Placement::new(volume, world_from_patient(volume.grid(), self.up.direction()))
+    }
+}
+
 impl CameraArgs {
     /// Refuses combinations that no picture can come from.
     pub(crate) fn check(&self) -> Result<(), Failure> {
@@ -143,12 +170,7 @@ impl CameraArgs {
                 Projection::Perspective(Frustum::from_fov_y(self.fov, self.size).map_err(Failure::input)?)
             }
         };
-        let orbit = Orbit {
-            azimuth_rad: (self.azimuth + turn_deg).to_radians(),
-            elevation_rad: self.elevation.to_radians(),
-            distance_m: self.distance,
-        };
-        let middle = orbit.view(projection, self.size);
+        let middle = self.aim.orbit(turn_deg, self.distance).view(projection, self.size);
         let rig = match self.stereo {
             Stereo::None => Rig::Mono,
             _ => Rig::Stereo { eye_distance_m: self.eye_distance, convergence_m: self.convergence },
@@ -175,4 +197,9 @@ impl CameraArgs {
             Err(mut eyes) => Picture::Still(eyes.swap_remove(0)),
         }
     }
+}
+
+/// How far the eye has turned in a picture of a turntable.
+pub(crate) fn turn_deg(index: u32, frames: u32) -> f64 {
+    360.0 / f64::from(frames) * f64::from(index)
 }

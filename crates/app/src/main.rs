@@ -6,6 +6,7 @@
 mod backend;
 mod camera;
 mod commands;
+mod display;
 mod failure;
 mod heat_map;
 mod interrupt;
@@ -17,9 +18,11 @@ mod pairing;
 mod picture;
 mod plot;
 mod progress;
+mod quilt_file;
 mod shipped;
 mod skipping;
 mod spec;
+mod text_file;
 mod transfer_spec;
 mod viewer;
 mod volume_args;
@@ -48,6 +51,8 @@ struct Cli {
 enum Command {
     Info(commands::info::InfoArgs),
     Render(Box<commands::render::RenderArgs>),
+    Quilt(Box<commands::quilt::QuiltArgs>),
+    Simulate(commands::simulate::SimulateArgs),
     Compare(commands::compare::CompareArgs),
     Phantom(commands::phantom::PhantomArgs),
     Doctor(commands::doctor::DoctorArgs),
@@ -61,6 +66,8 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Info(args) => commands::info::run(&args),
         Command::Render(args) => commands::render::run(&args),
+        Command::Quilt(args) => commands::quilt::run(&args),
+        Command::Simulate(args) => commands::simulate::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
         Command::Phantom(args) => commands::phantom::run(&args),
         Command::Doctor(args) => commands::doctor::run(&args),

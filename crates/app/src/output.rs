@@ -64,6 +64,15 @@ pub(crate) fn numbered(path: &Path, index: u32) -> PathBuf {
     path.with_file_name(format!("{stem}_{index:04}.{extension}"))
 }
 
+/// Files in words.
+pub(crate) fn described(outputs: &[PathBuf]) -> String {
+    match outputs {
+        [] => "nothing".to_owned(),
+        [one] => one.display().to_string(),
+        [first, .., last] => format!("{} … {}", first.display(), last.display()),
+    }
+}
+
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,

@@ -85,6 +85,16 @@ fn io_error(error: ImageError) -> io::Error {
 
 /// Writes a picture by way of a temporary file.
 pub(crate) fn write_png(path: &Path, picture: &RgbImage, bits: Bits) -> Result<(), Failure> {
+    write_png_with_exif(path, picture, bits, Vec::new())
+}
+
+/// The same with Exif metadata: a TIFF structure, or nothing.
+pub(crate) fn write_png_with_exif(
+    path: &Path,
+    picture: &RgbImage,
+    bits: Bits,
+    exif: Vec<u8>,
+) -> Result<(), Failure> {
     let (bytes, color_type) = match bits {
         Bits::Eight => (picture.to_rgb8(), ExtendedColorType::Rgb8),
         Bits::Sixteen => {
@@ -92,9 +102,9 @@ pub(crate) fn write_png(path: &Path, picture: &RgbImage, bits: Bits) -> Result<(
         }
     };
     write_atomically(path, |writer| {
-        PngEncoder::new(writer)
-            .write_image(&bytes, picture.width, picture.height, color_type)
-            .map_err(io_error)
+        let mut encoder = PngEncoder::new(writer);
+        encoder.set_exif_metadata(exif).map_err(io::Error::other)?;
+        encoder.write_image(&bytes, picture.width, picture.height, color_type).map_err(io_error)
     })?;
     Ok(())
 }

@@ -246,6 +246,21 @@ pub(crate) fn clip_plane(text: &str) -> Result<ClipPlane, String> {
         .ok_or_else(|| "must be nx,ny,nz,d with a normal that is not zero and d in metres".to_owned())
 }
 
+/// Furthest place from a display along each axis, metres.
+const FURTHEST_M: f64 = 1000.0;
+
+/// `X,Y,Z` in front of a display: metres from the middle of its screen, to the right, up and towards the viewers.
+pub(crate) fn eye(text: &str) -> Result<DVec3, String> {
+    numbers(text)
+        .filter(|[x, y, z]: &[f64; 3]| {
+            x.abs() <= FURTHEST_M && y.abs() <= FURTHEST_M && (0.001..=FURTHEST_M).contains(z)
+        })
+        .map(DVec3::from_array)
+        .ok_or_else(|| {
+            "must be X,Y,Z in metres, X and Y from -1000 to 1000 and Z from 0.001 to 1000".to_owned()
+        })
+}
+
 /// `A..B`, both finite.
 pub(crate) fn interval(text: &str) -> Option<[f64; 2]> {
     let (lo, hi) = text.split_once("..")?;
@@ -309,6 +324,8 @@ mod tests {
         assert!(clip_box("0..1,0..2,0..1").is_err());
         assert_eq!(clip_plane("0,0,-1,0.1").unwrap().offset_m, 0.1);
         assert!(clip_plane("0,0,0,1").is_err());
+        assert_eq!(eye("-0.1,0,0.5"), Ok(DVec3::new(-0.1, 0.0, 0.5)));
+        assert!(eye("0,0,0").is_err() && eye("0,0").is_err() && eye("0,0,inf").is_err());
     }
 
     #[test]

@@ -16,8 +16,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::Image;
-use wheatstone_core::scene::Placement;
-use wheatstone_core::view::world_from_patient;
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_io::write_atomically;
 
@@ -143,7 +141,7 @@ fn plan(shot: &'static Shot, size: [u32; 2], volume: &Volume) -> Result<Plan, Fa
         .with_context(|| format!("flags of {}", shot.file))?;
     args.camera.size = size;
     let look = args.look.resolve(volume)?;
-    let placement = Placement::new(volume, world_from_patient(volume.grid(), args.camera.up.direction()));
+    let placement = args.camera.aim.placement(volume);
     let parameters = CastParameters::new(&look.settings, &placement);
     Ok(Plan { shot, args, look, parameters })
 }

@@ -12,6 +12,8 @@ pub(crate) mod demo;
 pub(crate) mod doctor;
 pub(crate) mod info;
 pub(crate) mod phantom;
+pub(crate) mod quilt;
 pub(crate) mod render;
+pub(crate) mod simulate;
 pub(crate) mod view;
 pub(crate) mod vr;

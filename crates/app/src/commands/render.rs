@@ -3,11 +3,11 @@
 use crate::backend::{
     BackendChoice, Engine, GradientMapSize, Job, Leaping, NoPair, Shot, median, milliseconds, note_fallback,
 };
-use crate::camera::{CameraArgs, Stereo};
+use crate::camera::{CameraArgs, Stereo, turn_deg};
 use crate::failure::Failure;
 use crate::heat_map::{heat_map, most_reads};
 use crate::look::{Look, LookArgs, ModeName};
-use crate::output::{check_writable, numbered, print_json};
+use crate::output::{check_writable, described, numbered, print_json};
 use crate::pairing::{PairArgs, PairRequest, Pairing};
 use crate::picture::{Bits, Picture};
 use crate::progress::Bar;
@@ -20,8 +20,6 @@ use std::path::PathBuf;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::image::Image;
-use wheatstone_core::scene::Placement;
-use wheatstone_core::view::world_from_patient;
 use wheatstone_core::volume::Volume;
 use wheatstone_io::Loaded;
 
@@ -123,7 +121,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     loaded.volume.fill_non_finite(look.settings.window.lo());
     let volume = &loaded.volume;
-    let placement = Placement::new(volume, world_from_patient(volume.grid(), args.camera.up.direction()));
+    let placement = args.camera.aim.placement(volume);
     let parameters = CastParameters::new(&look.settings, &placement);
     let coarser = args.level_of_detail.map_or_else(Vec::new, |_| volume.coarser_levels());
     let needs_gpu = request.is_some_and(|request| request.is_single_pass());
@@ -369,18 +367,5 @@ impl RenderArgs {
             eprintln!("white is {white} samples and map reads");
         }
         Ok(())
-    }
-}
-
-/// How far the eye has turned in a picture of a turntable.
-fn turn_deg(index: u32, frames: u32) -> f64 {
-    360.0 / f64::from(frames) * f64::from(index)
-}
-
-fn described(outputs: &[PathBuf]) -> String {
-    match outputs {
-        [] => "nothing".to_owned(),
-        [one] => one.display().to_string(),
-        [first, .., last] => format!("{} … {}", first.display(), last.display()),
     }
 }

@@ -25,7 +25,6 @@ mod script;
 pub(crate) mod session;
 pub(crate) mod show;
 pub(crate) mod state;
-mod text_file;
 pub(crate) mod timings;
 pub(crate) mod ui;
 pub(crate) mod window;

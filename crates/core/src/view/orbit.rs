@@ -25,9 +25,14 @@ impl Default for Orbit {
 impl Orbit {
     /// The view of an eye on the orbit, looking at the origin.
     pub fn view(&self, projection: Projection, size: [u32; 2]) -> View {
+        View { view_from_world: self.view_from_world(), projection, size, shaded_from: None }
+    }
+
+    /// World to view space of that eye.
+    pub fn view_from_world(&self) -> DAffine3 {
         let world_from_view = DAffine3::from_mat3(
             DMat3::from_rotation_y(self.azimuth_rad) * DMat3::from_rotation_x(-self.elevation_rad),
         ) * DAffine3::from_translation(DVec3::Z * self.distance_m);
-        View { view_from_world: world_from_view.inverse(), projection, size, shaded_from: None }
+        world_from_view.inverse()
     }
 }

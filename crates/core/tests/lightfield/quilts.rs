@@ -159,3 +159,26 @@ fn each_fault_of_a_description_is_named() {
         assert!(found.contains(expected), "{found:?} does not say {expected:?}");
     }
 }
+
+proptest! {
+    #[test]
+    fn at_the_largest_scale_the_outermost_point_is_at_the_edge(
+        seed in prop::collection::vec((-1.0_f64..1.0, -1.0_f64..1.0, -1.0_f64..1.0), 1..8),
+        before_m in -0.05_f64..0.05,
+    ) {
+        let display = Model::Portrait.display();
+        let [width_m, height_m] = display.screen_size_m();
+        let points: Vec<DVec3> = seed.into_iter().map(|(x, y, z)| DVec3::new(x, y, z)).collect();
+        let scale = display.largest_scale(points.iter().copied(), before_m);
+        prop_assume!(scale < 1.0);
+        // In halves of the screen, from its middle.
+        let outermost = |scale: f64| {
+            let seen = |p: &DVec3| {
+                let nearer = display.focal_distance_m / (display.focal_distance_m - before_m - scale * p.z);
+                (2.0 * scale * p.x.abs() * nearer / width_m).max(2.0 * scale * p.y.abs() * nearer / height_m)
+            };
+            points.iter().map(seen).fold(0.0, f64::max)
+        };
+        prop_assert!((outermost(scale) - 1.0).abs() < 1e-9, "{}", outermost(scale));
+    }
+}

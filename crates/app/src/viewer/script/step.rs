@@ -3,8 +3,8 @@
 use super::chord::Chord;
 use super::drag::Drag;
 use crate::failure::Failure;
+use crate::text_file::read_text_file;
 use crate::viewer::command::Command;
-use crate::viewer::text_file::read_text_file;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 

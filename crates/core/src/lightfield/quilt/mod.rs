@@ -1,6 +1,7 @@
 //! Quilts: the views of a display behind lenses as tiles of one picture.
 
 mod depth_range;
+mod fit;
 mod model;
 mod name;
 mod tiles;

@@ -1,0 +1,372 @@
+//! `quilt`: a volume to the views of a display behind lenses.
+
+use crate::backend::{BackendChoice, Engine, Job, Leaping, Shot, median, milliseconds, note_fallback};
+use crate::camera::{AimArgs, turn_deg};
+use crate::display::{Display, DisplayArgs, read_calibration};
+use crate::failure::Failure;
+use crate::look::{Look, LookArgs};
+use crate::output::{check_writable, described, print_json};
+use crate::picture::{Bits, write_png, write_png_with_exif};
+use crate::progress::Bar;
+use crate::quilt_file::{QuiltPaths, metadata};
+use crate::skipping::{SkipArgs, SkipName, Skipping};
+use crate::spec;
+use crate::volume_args::VolumeArgs;
+use clap::{Args, ValueEnum};
+use glam::{DAffine3, DVec3};
+use serde_json::json;
+use std::path::PathBuf;
+use wheatstone_core::cast::CastParameters;
+use wheatstone_core::image::RgbImage;
+use wheatstone_core::lightfield::quilt::Sampling;
+use wheatstone_core::lightfield::{Lenticular, QuiltDisplay};
+use wheatstone_core::volume::Volume;
+use wheatstone_io::Loaded;
+
+/// Render a volume to a quilt: the views of a display behind lenses, in one PNG picture.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    wheatstone quilt head.nii.gz -o head.png --tf mri-brain-t1 --shading phong\n  \
+    wheatstone quilt ct.nrrd -o ct_qs11x6a0.5625.png --display go --tf ct-bone --volume-size 0.05\n  \
+    wheatstone quilt ct.nrrd -o ct.png --display mine.json --interlace visual.json\n  \
+    wheatstone quilt ct.nrrd -o ct.png --columns 4 --rows 4 --quilt-size 2048x2048 --aspect 1.6 --view-cone 35\n  \
+    wheatstone quilt head.nii.gz -o turn.png --turntable 36\n\n\
+    _qs{columns}x{rows}a{aspect} is added to the name. View 0 is the bottom left tile and that of the leftmost camera.")]
+pub(crate) struct QuiltArgs {
+    /// The PNG file to write.
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+
+    /// Where in the view cone the cameras are: camera i of N at (i + 1/2)/N, or at i/(N - 1).
+    #[arg(long, value_enum, default_value_t = SamplingName::Middles)]
+    sampling: SamplingName,
+
+    /// Length of the volume's longest side at the display, metres [default: as much as the screen shows in full].
+    #[arg(long, value_name = "M", value_parser = spec::within(1e-4..=1000.0), allow_negative_numbers = true)]
+    volume_size: Option<f64>,
+
+    /// How far before the screen the volume's centre is, metres; negative behind it.
+    #[arg(long, value_name = "M", default_value = "0", value_parser = spec::within(-1000.0..=1000.0), allow_negative_numbers = true)]
+    before_screen: f64,
+
+    /// Pixels of a view by which things may move from one view to the next before a warning tells of ghosts.
+    #[arg(long, value_name = "PIXELS", default_value = "2", value_parser = spec::within(0.1..=1000.0), allow_negative_numbers = true)]
+    most_disparity: f64,
+
+    /// Write N quilts, numbered from 0000 before the suffix, turning by 360/N degrees from one to the next.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
+    turntable: Option<u32>,
+
+    /// Write the picture for the panel, too, as OUT_interlaced.png, by the display's calibration (visual.json).
+    #[arg(long, value_name = "CALIBRATION.json")]
+    interlace: Option<PathBuf>,
+
+    /// Colour behind the volume.
+    #[arg(long, value_name = "RRGGBB", default_value = "000000", value_parser = spec::color)]
+    background: [f32; 3],
+
+    /// Bits per channel of the PNG files.
+    #[arg(long, value_enum, default_value = "8")]
+    bits: Bits,
+
+    /// What casts the rays.
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    backend: BackendChoice,
+
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    display: DisplayArgs,
+
+    #[command(flatten)]
+    aim: AimArgs,
+
+    #[command(flatten)]
+    look: LookArgs,
+
+    #[command(flatten)]
+    skip: SkipArgs,
+
+    #[command(flatten)]
+    volume: VolumeArgs,
+}
+
+/// Where in the view cone cameras are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SamplingName {
+    /// In the middle of the directions in which their views are seen.
+    Middles,
+    /// From one end to the other.
+    Ends,
+}
+
+impl SamplingName {
+    fn sampling(self) -> Sampling {
+        match self {
+            Self::Middles => Sampling::Middles,
+            Self::Ends => Sampling::Ends,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Middles => "middles",
+            Self::Ends => "ends",
+        }
+    }
+}
+
+/// A display, and how the volume stands in it.
+struct Stage {
+    display: QuiltDisplay,
+    lenses: Option<Lenticular>,
+    paths: QuiltPaths,
+    /// Length of the volume's longest side, metres.
+    volume_size_m: f64,
+    /// How far the volume reaches behind and before the screen in any quilt, metres.
+    behind_m: f64,
+    before_m: f64,
+}
+
+/// What was made and how long it took.
+struct Made {
+    views_ms: Vec<f64>,
+    samples: u64,
+    map_reads: u64,
+    leaping: Leaping,
+    outputs: Vec<PathBuf>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
+    check_writable(&args.output, "png")?;
+    args.look.check()?;
+    let skipping = args.skip.resolve(SkipName::Auto)?;
+    let lenses = args.interlace.as_ref().map(read_calibration).transpose()?;
+    let Display::Lenses(display) = args.display.resolve(lenses.as_ref())? else {
+        return Err(Failure::input("quilts are for displays behind lenses: this one has projectors"));
+    };
+    if args.before_screen >= display.focal_distance_m {
+        return Err(Failure::input(format!(
+            "--before-screen must be less than the distance of the cameras, {:.4} m",
+            display.focal_distance_m
+        )));
+    }
+    let paths = QuiltPaths::new(&args.output, &display)?;
+    let mut loaded = args.volume.load()?;
+    let look = args.look.resolve(&loaded.volume)?;
+    loaded.volume.fill_non_finite(look.settings.window.lo());
+    let volume = &loaded.volume;
+    let parameters = CastParameters::new(&look.settings, &args.aim.placement(volume));
+    let stage = args.stage(display, lenses, paths, &parameters)?;
+    args.warn_of_ghosts(&stage);
+    let mut engine = args.open(args.backend, &display, volume)?;
+    let made = match args.make(&mut engine, &stage, &parameters, &skipping) {
+        Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
+            note_fallback(&error);
+            engine = args.open(BackendChoice::Cpu, &display, volume)?;
+            args.make(&mut engine, &stage, &parameters, &skipping)?
+        }
+        made => made?,
+    };
+    args.report(&stage, &loaded, &look, &engine, &made)
+}
+
+impl QuiltArgs {
+    fn frames(&self) -> u32 {
+        self.turntable.unwrap_or(1)
+    }
+
+    /// The volume turned as in a frame, about its centre, its longest side of length 1.
+    fn turned(&self, frame: u32) -> DAffine3 {
+        self.aim.orbit(turn_deg(frame, self.frames()), 0.0).view_from_world()
+    }
+
+    fn stage(
+        &self,
+        display: QuiltDisplay,
+        lenses: Option<Lenticular>,
+        paths: QuiltPaths,
+        parameters: &CastParameters,
+    ) -> Result<Stage, Failure> {
+        let corners = parameters.visible_corners_world();
+        let turned: Vec<DVec3> = (0..self.frames())
+            .flat_map(|frame| corners.map(|corner| self.turned(frame).transform_point3(corner)))
+            .collect();
+        let fitting = display.largest_scale(turned.iter().copied(), self.before_screen);
+        let volume_size_m = self.volume_size.unwrap_or(fitting);
+        if !volume_size_m.is_finite() {
+            return Err(Failure::input("nothing of the volume is visible: --volume-size is needed"));
+        }
+        let toward_m = turned.iter().map(|corner| self.before_screen + volume_size_m * corner.z);
+        let (least_m, most_m) =
+            toward_m.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), z| (lo.min(z), hi.max(z)));
+        Ok(Stage { display, lenses, paths, volume_size_m, behind_m: -least_m, before_m: most_m })
+    }
+
+    fn warn_of_ghosts(&self, stage: &Stage) {
+        let limits = stage.display.depth_range(self.sampling.sampling(), self.most_disparity);
+        if stage.before_m <= limits.before_m && stage.behind_m <= limits.behind_m {
+            return;
+        }
+        let reach = |metres: f64, side| format!("{:.1} mm {side}", metres * 1e3);
+        eprintln!(
+            "warning: the volume reaches from {} to {} the screen; beyond {} and {} things move by more than {} pixels \
+             from view to view, which is seen as ghosts: --volume-size makes it smaller",
+            reach(stage.behind_m, "behind"),
+            reach(stage.before_m, "before"),
+            reach(limits.behind_m, "behind"),
+            reach(limits.before_m, "before"),
+            self.most_disparity,
+        );
+    }
+
+    fn open<'v>(
+        &self,
+        choice: BackendChoice,
+        display: &QuiltDisplay,
+        volume: &'v Volume,
+    ) -> Result<Engine<'v>, Failure> {
+        let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
+        let job = Job {
+            rays: rays(display) * u64::from(self.frames()),
+            samples_per_ray: longest as f64 * self.look.sampling_factor,
+            needs_gpu: false,
+        };
+        Engine::open(choice, &job, volume, self.look.storage.kind(volume))
+    }
+
+    fn make(
+        &self,
+        engine: &mut Engine<'_>,
+        stage: &Stage,
+        parameters: &CastParameters,
+        skipping: &Skipping,
+    ) -> Result<Made, Failure> {
+        let shot = engine.prepare(parameters, skipping)?;
+        let mut made = Made {
+            views_ms: Vec::new(),
+            samples: 0,
+            map_reads: 0,
+            leaping: engine.leaping(shot).clone(),
+            outputs: Vec::new(),
+        };
+        let exif = metadata(&stage.display)?;
+        let bar = Bar::new("views", u64::from(self.frames() * stage.display.view_count()));
+        for frame in 0..self.frames() {
+            let quilt = self.cast(engine, shot, stage, frame, &mut made, &bar)?;
+            let number = self.turntable.map(|_| frame);
+            let path = stage.paths.quilt(number);
+            write_png_with_exif(&path, &quilt, self.bits, exif.clone())?;
+            made.outputs.push(path);
+            if let Some(lenses) = &stage.lenses {
+                let interlaced = lenses.interlace(&stage.display, &quilt).map_err(Failure::input)?;
+                let path = stage.paths.interlaced(number);
+                write_png(&path, &interlaced, self.bits)?;
+                made.outputs.push(path);
+            }
+        }
+        Ok(made)
+    }
+
+    /// The quilt of a frame, view by view.
+    fn cast(
+        &self,
+        engine: &mut Engine<'_>,
+        shot: Shot,
+        stage: &Stage,
+        frame: u32,
+        made: &mut Made,
+        bar: &Bar,
+    ) -> Result<RgbImage, Failure> {
+        let display = &stage.display;
+        let display_from_world = DAffine3::from_translation(DVec3::Z * self.before_screen)
+            * DAffine3::from_scale(DVec3::splat(stage.volume_size_m))
+            * self.turned(frame);
+        let [width, height] = display.quilt_size_px;
+        let mut quilt = RgbImage { width, height, rgb: vec![[0.0; 3]; width as usize * height as usize] };
+        (made.samples, made.map_reads) = (0, 0);
+        for (index, view) in (0..).zip(display.views(self.sampling.sampling(), display_from_world)) {
+            made.views_ms.push(milliseconds(engine.cast(shot, &[view])?));
+            for cast in engine.read()? {
+                quilt.paste(&cast.image.over_background(self.background), display.tile_px(index));
+                made.samples += cast.samples;
+                made.map_reads += cast.map_reads;
+            }
+            bar.advance();
+        }
+        Ok(quilt)
+    }
+
+    fn report(
+        &self,
+        stage: &Stage,
+        loaded: &Loaded,
+        look: &Look,
+        engine: &Engine<'_>,
+        made: &Made,
+    ) -> Result<(), Failure> {
+        let Stage { display, volume_size_m, .. } = stage;
+        let dims = loaded.volume.grid().dims();
+        let quilt_ms = made.views_ms.iter().sum::<f64>() / f64::from(self.frames());
+        let settings = &look.settings;
+        if self.json {
+            let sampling = self.sampling.sampling();
+            let limits = display.depth_range(sampling, self.most_disparity);
+            let outputs: Vec<String> = made.outputs.iter().map(|path| path.display().to_string()).collect();
+            let warnings: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
+            return print_json(&json!({
+                "backend": engine.backend_name(),
+                "device": engine.device_name(),
+                "driver": engine.driver_name(),
+                "dims": dims,
+                "display": display,
+                "views": display.view_count(),
+                "tile_size": display.tile_size_px(),
+                "sampling": self.sampling.name(),
+                "volume_size_m": volume_size_m,
+                "behind_screen_m": stage.behind_m,
+                "before_screen_m": stage.before_m,
+                "behind_limit_m": limits.behind_m.is_finite().then_some(limits.behind_m),
+                "before_limit_m": limits.before_m,
+                "mode": look.mode.name(),
+                "shading": spec::shading_name(settings.shading),
+                "tf": look.transfer_name,
+                "window": [settings.window.lo(), settings.window.hi()],
+                "view_ms": median(&made.views_ms),
+                "quilt_ms": quilt_ms,
+                "samples": made.samples,
+                "rays": rays(display),
+                "skip": made.leaping.to_json(made.map_reads),
+                "upload_ms": milliseconds(engine.upload_time()),
+                "outputs": outputs,
+                "warnings": warnings,
+            }));
+        }
+        eprintln!(
+            "{}×{}×{} → {}x{} views of {}x{} {} on {} ({}): {quilt_ms:.0} ms per quilt, {:.1} M samples, {} → {}",
+            dims[0],
+            dims[1],
+            dims[2],
+            display.columns,
+            display.rows,
+            display.tile_size_px()[0],
+            display.tile_size_px()[1],
+            look.mode.name(),
+            engine.backend_name(),
+            engine.device_name(),
+            made.samples as f64 / 1e6,
+            made.leaping.described(made.map_reads),
+            described(&made.outputs),
+        );
+        Ok(())
+    }
+}
+
+/// Pixels of all views.
+fn rays(display: &QuiltDisplay) -> u64 {
+    let [width, height] = display.tile_size_px().map(u64::from);
+    width * height * u64::from(display.view_count())
+}

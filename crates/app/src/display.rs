@@ -1,0 +1,141 @@
+//! Which light-field display.
+
+use crate::failure::Failure;
+use crate::spec;
+use crate::text_file::read_text_file;
+use clap::Args;
+use std::path::{Path, PathBuf};
+use wheatstone_core::lightfield::quilt::Model;
+use wheatstone_core::lightfield::{DisplayError, Lenticular, ProjectorArray, QuiltDisplay};
+
+/// Flags that describe a display.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Display")]
+pub(crate) struct DisplayArgs {
+    /// portrait, go, 16, 32, 65, 16-landscape, 16-portrait, 32-landscape, 32-portrait (by Looking Glass), agus-2008
+    /// (projectors) or a description; what follows replaces its numbers.
+    #[arg(long, value_name = "NAME|FILE.json", default_value = "portrait")]
+    display: String,
+
+    /// Views beside each other in a quilt.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), allow_negative_numbers = true)]
+    columns: Option<u32>,
+
+    /// Views above each other in a quilt.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), allow_negative_numbers = true)]
+    rows: Option<u32>,
+
+    /// Width and height of a quilt, pixels.
+    #[arg(long, value_name = "WxH", value_parser = spec::picture_size)]
+    quilt_size: Option<[u32; 2]>,
+
+    /// Width of the screen over its height.
+    #[arg(long, value_name = "RATIO", value_parser = spec::within(0.01..=100.0), allow_negative_numbers = true)]
+    aspect: Option<f64>,
+
+    /// Angle between the outermost directions in which there are views, degrees.
+    #[arg(long, value_name = "DEG", value_parser = spec::within(0.1..=179.0), allow_negative_numbers = true)]
+    view_cone: Option<f64>,
+
+    /// Distance of the cameras from the screen, metres.
+    #[arg(long, value_name = "M", value_parser = spec::within(0.001..=1000.0), allow_negative_numbers = true)]
+    focal_distance: Option<f64>,
+
+    /// Height of the screen, metres.
+    #[arg(long, value_name = "M", value_parser = spec::within(0.001..=1000.0), allow_negative_numbers = true)]
+    screen_height: Option<f64>,
+}
+
+/// A display of either kind.
+#[derive(Debug, Clone)]
+pub(crate) enum Display {
+    /// Behind lenses.
+    Lenses(QuiltDisplay),
+    /// Projectors behind a screen.
+    Projectors(ProjectorArray),
+}
+
+/// Name of the display of projectors that LF describes.
+const OF_PAPER: &str = "agus-2008";
+
+/// Most bytes of a description: thousands of projectors take a few hundred each.
+const MOST_BYTES: u64 = 1 << 22;
+
+/// By how much of itself the aspect of a panel may differ from that of its display.
+const ASPECT_TOLERANCE: f64 = 0.02;
+
+impl DisplayArgs {
+    /// The display. Behind lenses whose calibration is known, the view cone is theirs.
+    pub(crate) fn resolve(&self, lenses: Option<&Lenticular>) -> Result<Display, Failure> {
+        match self.named()? {
+            Display::Lenses(display) => self.changed(display, lenses).map(Display::Lenses),
+            Display::Projectors(_) if self.changes_something() || lenses.is_some() => {
+                Err(Failure::input(format!(
+                    "{} has projectors: columns, rows, sizes and calibrations are those of displays behind lenses",
+                    self.display
+                )))
+            }
+            projectors @ Display::Projectors(_) => Ok(projectors),
+        }
+    }
+
+    fn named(&self) -> Result<Display, Failure> {
+        if self.display == OF_PAPER {
+            return Ok(Display::Projectors(ProjectorArray::of_paper()));
+        }
+        let path = Path::new(&self.display);
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+            return read_text_file(path, MOST_BYTES, "a description of a display", from_json);
+        }
+        let model: Model = self.display.parse().map_err(|error| {
+            Failure::input(format!("--display: {error}, {OF_PAPER}; descriptions end in .json"))
+        })?;
+        Ok(Display::Lenses(model.display()))
+    }
+
+    fn changes_something(&self) -> bool {
+        let Self { columns, rows, quilt_size, aspect, view_cone, focal_distance, screen_height, .. } = self;
+        let numbers = [aspect, view_cone, focal_distance, screen_height];
+        columns.or(*rows).is_some() || quilt_size.is_some() || numbers.iter().any(|number| number.is_some())
+    }
+
+    fn changed(&self, base: QuiltDisplay, lenses: Option<&Lenticular>) -> Result<QuiltDisplay, Failure> {
+        let cone_of_lenses = lenses.map(|lenses| lenses.view_cone_deg);
+        let display = QuiltDisplay {
+            columns: self.columns.unwrap_or(base.columns),
+            rows: self.rows.unwrap_or(base.rows),
+            quilt_size_px: self.quilt_size.unwrap_or(base.quilt_size_px),
+            aspect: self.aspect.unwrap_or(base.aspect),
+            view_cone_deg: self.view_cone.or(cone_of_lenses).unwrap_or(base.view_cone_deg),
+            focal_distance_m: self.focal_distance.unwrap_or(base.focal_distance_m),
+            screen_height_m: self.screen_height.unwrap_or(base.screen_height_m),
+        };
+        let display = display.checked().map_err(Failure::input)?;
+        if let Some([width, height]) = lenses.map(|lenses| lenses.panel_px) {
+            let panel_aspect = f64::from(width) / f64::from(height);
+            if (panel_aspect / display.aspect - 1.0).abs() > ASPECT_TOLERANCE {
+                return Err(Failure::input(format!(
+                    "the calibration is of a panel of {width}x{height} pixels, {panel_aspect:.4}: the display's aspect is {:.4}",
+                    display.aspect
+                )));
+            }
+        }
+        Ok(display)
+    }
+}
+
+/// Either kind of description.
+fn from_json(text: &str) -> Result<Display, DisplayError> {
+    let is_array =
+        serde_json::from_str::<serde_json::Value>(text)?.get("wheatstone_projector_array").is_some();
+    if is_array {
+        ProjectorArray::from_json(text).map(Display::Projectors)
+    } else {
+        QuiltDisplay::from_json(text).map(Display::Lenses)
+    }
+}
+
+/// Reads the calibration of a display's lenses.
+pub(crate) fn read_calibration(path: &PathBuf) -> Result<Lenticular, Failure> {
+    read_text_file(path, MOST_BYTES, "a calibration", Lenticular::from_visual_json)
+}
