@@ -53,6 +53,7 @@ pub(crate) struct CameraArgs {
 
 /// From which side the volume is seen.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Camera")]
 pub(crate) struct AimArgs {
     /// Turn of the eye about the vertical axis, degrees.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = spec::within(-36000.0..=36000.0), allow_negative_numbers = true)]

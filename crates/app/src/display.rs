@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::spec;
 use crate::text_file::read_text_file;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use wheatstone_core::lightfield::quilt::Model;
 use wheatstone_core::lightfield::{DisplayError, Lenticular, ProjectorArray, QuiltDisplay};
 
@@ -87,7 +87,7 @@ impl DisplayArgs {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
             return read_text_file(path, MOST_BYTES, "a description of a display", from_json);
         }
-        let model: Model = self.display.parse().map_err(|error| {
+        let model = self.display.parse::<Model>().map_err(|error| {
             Failure::input(format!("--display: {error}, {OF_PAPER}; descriptions end in .json"))
         })?;
         Ok(Display::Lenses(model.display()))
@@ -136,6 +136,6 @@ fn from_json(text: &str) -> Result<Display, DisplayError> {
 }
 
 /// Reads the calibration of a display's lenses.
-pub(crate) fn read_calibration(path: &PathBuf) -> Result<Lenticular, Failure> {
+pub(crate) fn read_calibration(path: &Path) -> Result<Lenticular, Failure> {
     read_text_file(path, MOST_BYTES, "a calibration", Lenticular::from_visual_json)
 }

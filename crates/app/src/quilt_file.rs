@@ -91,6 +91,6 @@ pub(crate) fn metadata(display: &QuiltDisplay) -> Result<Vec<u8>, Failure> {
     let mut writer = Writer::new();
     writer.push_field(&comment);
     let mut exif = Cursor::new(Vec::new());
-    writer.write(&mut exif, true).map_err(|error| Failure::Internal(error.into()))?;
+    writer.write(&mut exif, true).map_err(|error| anyhow::anyhow!("cannot write Exif metadata: {error}"))?;
     Ok(exif.into_inner())
 }

@@ -144,7 +144,7 @@ pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
     check_writable(&args.output, "png")?;
     args.look.check()?;
     let skipping = args.skip.resolve(SkipName::Auto)?;
-    let lenses = args.interlace.as_ref().map(read_calibration).transpose()?;
+    let lenses = args.interlace.as_deref().map(read_calibration).transpose()?;
     let Display::Lenses(display) = args.display.resolve(lenses.as_ref())? else {
         return Err(Failure::input("quilts are for displays behind lenses: this one has projectors"));
     };
@@ -211,7 +211,7 @@ impl QuiltArgs {
         if stage.before_m <= limits.before_m && stage.behind_m <= limits.behind_m {
             return;
         }
-        let reach = |metres: f64, side| format!("{:.1} mm {side}", metres * 1e3);
+        let reach = |metres: f64, side: &str| format!("{:.1} mm {side}", metres * 1e3);
         eprintln!(
             "warning: the volume reaches from {} to {} the screen; beyond {} and {} things move by more than {} pixels \
              from view to view, which is seen as ghosts: --volume-size makes it smaller",

@@ -97,7 +97,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
 
 impl SimulateArgs {
     fn shown(&self) -> Result<Shown, Failure> {
-        let lenses = self.interlaced.as_ref().map(read_calibration).transpose()?;
+        let lenses = self.interlaced.as_deref().map(read_calibration).transpose()?;
         match (self.display.resolve(lenses.as_ref())?, lenses) {
             (Display::Projectors(array), _) => Shown::of_frames(array, &self.pictures),
             (Display::Lenses(display), lenses) => {
