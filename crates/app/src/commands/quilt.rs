@@ -155,6 +155,7 @@ pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
         )));
     }
     let paths = QuiltPaths::new(&args.output, &display)?;
+    check_writable(&paths.quilt(args.turntable.map(|_| 0)), "png")?;
     let mut loaded = args.volume.load()?;
     let look = args.look.resolve(&loaded.volume)?;
     loaded.volume.fill_non_finite(look.settings.window.lo());
