@@ -289,7 +289,7 @@ fn an_eye_sees_the_projector_whose_beam_meets_it() {
     let grey = |id: u32| Picture { width: 16, height: 16, rgb: vec![[0.2 * (id + 1) as f32; 3]; 256] };
     let images: Vec<Picture> = (0..4).map(grey).collect();
     for (index, frame) in array.pack(&images).unwrap().iter().enumerate() {
-        let png = image::RgbImage::from_raw(32, 18, frame.to_rgb8()).unwrap();
+        let png = RgbImage::from_raw(32, 18, frame.to_rgb8()).unwrap();
         png.save(bench.path(&format!("frame_{index}.png"))).unwrap();
     }
     for id in 0..4_u32 {
