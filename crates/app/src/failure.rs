@@ -23,6 +23,11 @@ impl Failure {
         Self::Input(anyhow::anyhow!("{message}"))
     }
 
+    /// Whether it is that of a device that is gone.
+    pub(crate) fn is_end_of_device(&self) -> bool {
+        matches!(self, Self::Gpu(GpuError::Lost { .. } | GpuError::Hung { .. }))
+    }
+
     /// The process's exit code.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {

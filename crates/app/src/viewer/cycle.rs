@@ -1,7 +1,6 @@
 //! One refresh after the other: input, commands, pictures, panels; then work for the device.
 
-use super::canvas::{Canvas, Sheet, texture, write_texture};
-use super::capture::{Capture, Subject};
+use super::canvas::{Canvas, Sheet};
 use super::casting::{Casting, seen, views};
 use super::command::Command;
 use super::eyes::{BeyondReach, Eyes, Wanted};
@@ -11,13 +10,13 @@ use super::script::{Due, Happening, Player, Status};
 use super::session::Session;
 use super::show::Area;
 use super::timings::Timings;
-use super::ui::{Desk, Shown, dress, run_passes};
+use super::ui::{Beholder, Desk, Shown, dress, run_passes};
 use crate::failure::Failure;
 use crate::spec::clamped_side;
 use egui::{Context, PlatformOutput, RawInput, Rect, ViewportId};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use wheatstone_render::{Gpu, GpuError};
+use wheatstone_render::Gpu;
 
 /// How often a cast under way is looked after.
 const LOOK_AFTER: Duration = Duration::from_millis(3);
@@ -35,7 +34,6 @@ pub(crate) struct Viewer {
     casting: Casting,
     screen: Screen,
     eyes: Eyes,
-    format: wgpu::TextureFormat,
     desk: Desk,
     context: Context,
     player: Option<Player>,
@@ -71,7 +69,6 @@ impl Viewer {
             casting: Casting::new(&gpu)?,
             screen: Screen::new(&gpu, canvas.format()),
             eyes: Eyes::new(&gpu)?.beyond_reach(BeyondReach::AsItIs),
-            format: canvas.format(),
             desk: Desk::new(),
             timings: Timings::default(),
             report: Report::new(begun, device),
@@ -155,7 +152,7 @@ impl Viewer {
         } else {
             self.repaint_at = Some(Instant::now() + TRY_AGAIN);
         }
-        self.capture(&pictures, &panels, size)?;
+        self.capture(&pictures, &panels)?;
         self.screen.free(&panels);
         self.drawn_pictures = self.casting.pictures();
         self.measure(wanted, begun);
@@ -192,7 +189,7 @@ impl Viewer {
             .and_then(|aimed| self.casting.receive(&self.gpu, *arrived, &showing.state, aimed));
         match received {
             Ok(()) => self.session.show(showing),
-            Err(Failure::Gpu(error)) if is_end(&error) => return Err(error.into()),
+            Err(failure) if failure.is_end_of_device() => return Err(failure),
             Err(failure) => self.session.refuse(&failure),
         }
         Ok(())
@@ -229,6 +226,7 @@ impl Viewer {
         let output = run_passes(context, input, |ui| {
             let shown = Shown {
                 state: session.state(),
+                beholder: &Beholder::Camera,
                 facts: session.facts(),
                 placement: casting.placement(),
                 progress: session.progress(),
@@ -268,42 +266,13 @@ impl Viewer {
     }
 
     /// Writes the files that are asked for.
-    fn capture(&mut self, pictures: &Pictures, panels: &Panels, size: [u32; 2]) -> Result<(), Failure> {
+    fn capture(&mut self, pictures: &Pictures, panels: &Panels) -> Result<(), Failure> {
         let is_at_rest = self.casting.is_resting()
             && self.session.progress().is_none()
             && pictures.eyes.is_some()
             && self.casting.pictures() == self.drawn_pictures;
-        for capture in self.session.take_captures(is_at_rest) {
-            let written = self.write(&capture, pictures, panels, size);
-            match written {
-                Ok(()) => self.session.notes.done(format!("wrote {}", capture.path.display())),
-                failed => drop(self.survive(failed)?),
-            }
-        }
-        Ok(())
-    }
-
-    fn write(
-        &mut self,
-        capture: &Capture,
-        pictures: &Pictures,
-        panels: &Panels,
-        size: [u32; 2],
-    ) -> Result<(), Failure> {
-        let Self { gpu, screen, format, .. } = self;
-        let size = if capture.subject == Subject::Picture { pictures.area.size() } else { size };
-        let texture = texture(gpu, size, *format)?;
-        let sheet = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        match capture.subject {
-            Subject::Picture => {
-                let alone = Pictures { area: Area::whole(size), eyes: pictures.eyes.clone(), ..*pictures };
-                screen.draw_pictures_alone(gpu, &sheet, &alone);
-            }
-            Subject::Window => {
-                screen.draw(gpu, &sheet, pictures, panels);
-            }
-        }
-        write_texture(gpu, &texture, &capture.path)
+        let Self { gpu, session, screen, .. } = self;
+        session.capture(is_at_rest, |capture| screen.write(gpu, capture, pictures, panels))
     }
 
     fn measure(&mut self, wanted: Instant, begun: Instant) {
@@ -316,20 +285,7 @@ impl Viewer {
         Duration::from_secs_f64(self.session.state().pace.refresh_ms / 1e3)
     }
 
-    /// Notes a failure; a device that is gone ends the program.
     fn survive<T>(&mut self, outcome: Result<T, Failure>) -> Result<Option<T>, Failure> {
-        match outcome {
-            Err(Failure::Gpu(error)) if is_end(&error) => Err(error.into()),
-            Err(failure) => {
-                self.session.notes.failed(failure.to_string());
-                Ok(None)
-            }
-            Ok(made) => Ok(Some(made)),
-        }
+        self.session.notes.survive(outcome)
     }
-}
-
-/// Whether a device that says so is gone.
-fn is_end(error: &GpuError) -> bool {
-    matches!(error, GpuError::Lost { .. } | GpuError::Hung { .. })
 }

@@ -1,5 +1,6 @@
 //! Messages that the window shows for a while.
 
+use crate::failure::Failure;
 use std::time::{Duration, Instant};
 
 /// How long a message is shown.
@@ -46,6 +47,18 @@ impl Notes {
             self.failures.push(text.clone());
         }
         self.push(Tone::Failed, text);
+    }
+
+    /// Notes a failure; that of a device that is gone comes back.
+    pub(crate) fn survive<T>(&mut self, outcome: Result<T, Failure>) -> Result<Option<T>, Failure> {
+        match outcome {
+            Err(failure) if failure.is_end_of_device() => Err(failure),
+            Err(failure) => {
+                self.failed(failure.to_string());
+                Ok(None)
+            }
+            Ok(made) => Ok(Some(made)),
+        }
     }
 
     /// What is to be shown now.

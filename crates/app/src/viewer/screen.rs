@@ -1,8 +1,11 @@
 //! Draws a refresh: pictures, then panels over them.
 
+use super::canvas::{texture, write_texture};
+use super::capture::{Capture, Subject};
 use super::show::{Area, Show};
 use super::state::Arrangement;
 use super::ui::PANEL;
+use crate::failure::Failure;
 use egui::epaint::ClippedPrimitive;
 use egui::{FullOutput, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
@@ -10,6 +13,8 @@ use wheatstone_render::Gpu;
 
 /// What is kept between refreshes.
 pub(crate) struct Screen {
+    /// Of what is drawn on.
+    format: wgpu::TextureFormat,
     show: Show,
     panels: Renderer,
 }
@@ -47,6 +52,7 @@ impl Panels {
 impl Screen {
     pub(crate) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         Self {
+            format,
             show: Show::new(gpu.device(), format),
             panels: Renderer::new(
                 gpu.device(),
@@ -87,8 +93,34 @@ impl Screen {
         queue.submit(commands)
     }
 
+    /// Writes what a capture is of, once more as it has been drawn: PNG; waits for the device.
+    pub(crate) fn write(
+        &mut self,
+        gpu: &Gpu,
+        capture: &Capture,
+        pictures: &Pictures,
+        panels: &Panels,
+    ) -> Result<(), Failure> {
+        let size = match capture.subject {
+            Subject::Picture => pictures.area.size(),
+            Subject::Window => panels.descriptor.size_in_pixels,
+        };
+        let texture = texture(gpu, size, self.format)?;
+        let sheet = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        match capture.subject {
+            Subject::Picture => {
+                let alone = Pictures { area: Area::whole(size), eyes: pictures.eyes.clone(), ..*pictures };
+                self.draw_pictures_alone(gpu, &sheet, &alone);
+            }
+            Subject::Window => {
+                self.draw(gpu, &sheet, pictures, panels);
+            }
+        }
+        write_texture(gpu, &texture, &capture.path)
+    }
+
     /// Draws pictures alone.
-    pub(crate) fn draw_pictures_alone(&self, gpu: &Gpu, sheet: &wgpu::TextureView, pictures: &Pictures) {
+    fn draw_pictures_alone(&self, gpu: &Gpu, sheet: &wgpu::TextureView, pictures: &Pictures) {
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = begin(&mut encoder, sheet);
         self.draw_pictures(gpu, &mut pass, pictures);

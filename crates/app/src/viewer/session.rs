@@ -156,8 +156,21 @@ impl Session {
         }
     }
 
-    /// Pictures to take now; those of a picture at rest only if it is.
-    pub(crate) fn take_captures(&mut self, is_at_rest: bool) -> Vec<Capture> {
+    /// Takes the pictures that are due by something that writes them; those of a picture at rest only if it is.
+    pub(crate) fn capture(
+        &mut self,
+        is_at_rest: bool,
+        mut write: impl FnMut(&Capture) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        for capture in self.take_captures(is_at_rest) {
+            if self.notes.survive(write(&capture))?.is_some() {
+                self.notes.done(format!("wrote {}", capture.path.display()));
+            }
+        }
+        Ok(())
+    }
+
+    fn take_captures(&mut self, is_at_rest: bool) -> Vec<Capture> {
         if is_at_rest
             && self.captures.is_empty()
             && let Some(turntable) = &mut self.turntable
@@ -189,9 +202,9 @@ impl Session {
             Command::Save(path) => self.save(path),
             Command::Picture(path) => {
                 self.expect_volume()?;
-                self.capture(Subject::Picture, path)
+                self.note_capture(Subject::Picture, path)
             }
-            Command::Screenshot(path) => self.capture(Subject::Window, path),
+            Command::Screenshot(path) => self.note_capture(Subject::Window, path),
             Command::Turntable { pictures, path } => {
                 self.expect_volume()?;
                 check_writable(path, "png")?;
@@ -215,7 +228,7 @@ impl Session {
         }
     }
 
-    fn capture(&mut self, subject: Subject, path: &Path) -> Result<(), Failure> {
+    fn note_capture(&mut self, subject: Subject, path: &Path) -> Result<(), Failure> {
         check_writable(path, "png")?;
         self.captures.push(Capture { subject, path: path.to_owned() });
         Ok(())
@@ -303,6 +316,7 @@ fn suiting(source: &Source) -> TransferSpec {
 mod tests {
     use super::*;
     use wheatstone_core::volume::{Grid, Volume, Voxels};
+    use wheatstone_render::GpuError;
 
     #[test]
     fn a_session_begins_with_an_absolute_path() {
@@ -354,6 +368,30 @@ mod tests {
         session.show(arrives(&session));
         assert!(session.facts.is_some() && session.state.file == session.source.file);
         assert_ne!(session.state, before);
+    }
+
+    #[test]
+    fn a_screenshot_is_taken_at_once_a_picture_at_rest_and_what_cannot_be_written_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let [window, picture] = ["a.png", "b.png"].map(|name| folder.path().join(name));
+        let source = Source { file: Some("missing.nrrd".into()), layout: None };
+        let mut session = Session::begin(source, Arc::new(|| ()), Destination::Headset).unwrap();
+        session.perform(&Command::Screenshot(window.clone()));
+        session.perform(&Command::Picture(picture.clone()));
+        let mut taken = Vec::new();
+        for is_at_rest in [false, true] {
+            let write = |capture: &Capture| {
+                taken.push((is_at_rest, capture.path.clone()));
+                if capture.subject == Subject::Window { Ok(()) } else { Err(Failure::input("no room")) }
+            };
+            session.capture(is_at_rest, write).unwrap();
+        }
+        assert_eq!(taken, [(false, window), (true, picture)]);
+        assert!(!session.is_capturing() && session.notes.latest()[0].text.contains("a.png"));
+        assert_eq!(session.notes.failures(), ["no room"]);
+        session.perform(&Command::Screenshot(folder.path().join("c.png")));
+        let is_gone = |_: &Capture| Err(Failure::Gpu(GpuError::Hung { seconds: 1 }));
+        assert!(session.capture(false, is_gone).is_err());
     }
 
     #[test]

@@ -19,14 +19,18 @@ use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::platform::pump_events::EventLoopExtPumpEvents as _;
 use winit::window::{Window, WindowId};
 
-/// How often it is drawn: the headset comes first.
+/// Least time from one drawing to the next: the headset comes first.
 const EVERY: Duration = Duration::from_millis(100);
+
+/// Part of the time that drawing may take: one of so many.
+const ONE_OF: u32 = 10;
 
 /// The window, and the connection to the display.
 pub(crate) struct Mirror {
     events: EventLoop<()>,
     watch: Watch,
-    drawn: Option<Instant>,
+    /// When it is drawn next.
+    due: Instant,
 }
 
 /// What waits for the window, then the window.
@@ -51,7 +55,7 @@ impl Mirror {
     /// Opens a window of some points for pictures on a device of an instance.
     pub(crate) fn open(gpu: Arc<Gpu>, instance: wgpu::Instance, size: [u32; 2]) -> Result<Self, Failure> {
         let events = event_loop()?;
-        let mut mirror = Self { events, watch: Watch::Before { gpu, instance, size }, drawn: None };
+        let mut mirror = Self { events, watch: Watch::Before { gpu, instance, size }, due: Instant::now() };
         mirror.pump()?;
         Ok(mirror)
     }
@@ -69,20 +73,26 @@ impl Mirror {
 
 impl Beside for Mirror {
     fn refreshed(&mut self, room: &mut Room) -> Result<(), Failure> {
-        if self.drawn.is_some_and(|drawn| drawn.elapsed() < EVERY) {
+        let begun = Instant::now();
+        if begun < self.due {
             return Ok(());
         }
-        self.drawn = Some(Instant::now());
         self.pump()?;
-        match &mut self.watch {
-            Watch::Open(open) => open.draw(room),
-            _ => Ok(()),
+        if let Watch::Open(open) = &mut self.watch {
+            open.draw(room)?;
         }
+        self.due = begun + until_next(begun.elapsed());
+        Ok(())
     }
 
     fn has_quit(&self) -> bool {
         matches!(&self.watch, Watch::Open(open) if open.has_quit)
     }
+}
+
+/// From the beginning of a drawing that took so long to the next.
+fn until_next(took: Duration) -> Duration {
+    EVERY.max(ONE_OF * took)
 }
 
 impl Open {
@@ -117,7 +127,7 @@ impl Open {
 
     fn draw(&mut self, room: &mut Room) -> Result<(), Failure> {
         let input = self.input.take_egui_input(&self.window);
-        let Mirrored { session, casting, timings, device, pictures } = room.mirrored();
+        let Mirrored { session, casting, timings, device, pictures, beholder } = room.mirrored();
         let notes = session.notes.latest().to_vec();
         let quality = casting.described_quality();
         let mut area = Rect::NOTHING;
@@ -125,8 +135,9 @@ impl Open {
         let mut output = run_passes(&self.context, input, |ui| {
             let shown = Shown {
                 state: session.state(),
+                beholder: &beholder,
                 facts: session.facts(),
-                placement: None,
+                placement: casting.placement(),
                 progress: session.progress(),
                 notes: &notes,
                 timings,
@@ -153,6 +164,10 @@ impl Open {
                 self.gpu.queue().present(texture);
             }
         }
+        let has_something_to_show = pictures.eyes.is_some() && session.progress().is_none();
+        session.capture(has_something_to_show, |capture| {
+            self.screen.write(&self.gpu, capture, &pictures, &panels)
+        })?;
         self.screen.free(&panels);
         self.input.handle_platform_output(&self.window, output.platform_output);
         Ok(self.gpu.check()?)
@@ -181,5 +196,17 @@ impl ApplicationHandler for Watch {
             }
             _ => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_dear_is_drawn_less_often() {
+        let ms = Duration::from_millis;
+        assert_eq!(until_next(ms(2)), EVERY);
+        assert_eq!(until_next(ms(25)), ms(250));
     }
 }

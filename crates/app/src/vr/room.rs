@@ -19,6 +19,7 @@ use crate::viewer::loading::Arrived;
 use crate::viewer::session::{Session, Showing};
 use crate::viewer::state::{EyeMethod, WarpName};
 use crate::viewer::timings::{Frame, Timings};
+use crate::viewer::ui::Beholder;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -99,13 +100,14 @@ pub(crate) fn run(
             Moment::Shown => {}
         }
         beside.refreshed(&mut room)?;
+        room.cast()?;
     };
     room.into_report(ended)
 }
 
 /// What goes on beside the headset.
 pub(crate) trait Beside {
-    /// After each refresh: a mirror is drawn, ticks are recorded.
+    /// After each refresh, in time that is not spent casting: a mirror is drawn, ticks are recorded.
     fn refreshed(&mut self, room: &mut Room) -> Result<(), Failure>;
 
     /// Whether the session is to end.
@@ -120,6 +122,7 @@ pub(crate) struct Mirrored<'a> {
     pub(crate) device: &'a str,
     /// Of the left and the right eye, premultiplied.
     pub(crate) pictures: Option<&'a [wgpu::TextureView; 2]>,
+    pub(crate) beholder: Beholder,
 }
 
 /// The volume, what looks at it, and what takes hold of it.
@@ -145,6 +148,8 @@ pub(crate) struct Room {
     refreshes: Option<u64>,
     aimed: Vec<View>,
     tick: Option<Tick>,
+    /// Until when there is time to cast; none while the headset wants no pictures.
+    cast_until: Option<Instant>,
     pub(super) pictures: Option<[wgpu::TextureView; 2]>,
     timings: Timings,
     floor_y_m: Option<f64>,
@@ -180,6 +185,7 @@ impl Room {
             refreshes,
             aimed: Vec::new(),
             tick: None,
+            cast_until: None,
             pictures: None,
             timings: Timings::default(),
             floor_y_m: headset.floor_y_m(),
@@ -199,7 +205,9 @@ impl Room {
 
     /// What a window beside the headset shows.
     pub(crate) fn mirrored(&mut self) -> Mirrored<'_> {
+        let beholder = self.beholder();
         Mirrored {
+            beholder,
             session: &mut self.session,
             casting: &self.casting,
             timings: &self.timings,
@@ -208,12 +216,27 @@ impl Room {
         }
     }
 
+    fn beholder(&self) -> Beholder {
+        let eyes = self.tick.and_then(|tick| tick.eyes);
+        let views = match (eyes, &self.hands, &self.pictures) {
+            (Some(eyes), Some(hands), Some(pictures)) => {
+                let sizes = pictures
+                    .each_ref()
+                    .map(|picture| [picture.texture().width(), picture.texture().height()]);
+                Some(Box::new(upright_views(&eyes, hands.stand(), sizes)))
+            }
+            _ => None,
+        };
+        let period_ms = self.tick.map_or(self.session.state().pace.refresh_ms, |tick| 1e3 * tick.period_s);
+        Beholder::Headset { views, period_ms: period_ms as f32 }
+    }
+
     fn wants_to_end(&self) -> bool {
         let is_over = self.refreshes.is_some_and(|most| self.report.refreshes >= most);
         is_over || self.session.has_quit()
     }
 
-    /// Waits for the next refresh, draws it, and hands over as much casting as fits before the one after it.
+    /// Waits for the next refresh and draws it.
     fn refresh(&mut self, headset: &mut dyn Headset) -> Result<Moment, Failure> {
         let sizes = headset.eye_sizes();
         self.eyes.hide(headset.hidden_areas());
@@ -242,13 +265,21 @@ impl Room {
                     self.report.late.pause();
                 }
                 self.report.period_s = tick.period_s;
-                let left_s = (1.0 - KEPT_FREE) * tick.period_s - begun.elapsed().as_secs_f64();
-                let cast_s = left_s.max(LEAST_CAST * tick.period_s);
-                self.casting.refresh(&self.gpu, Duration::from_secs_f64(cast_s))?;
+                self.cast_until = Some(begun + Duration::from_secs_f64((1.0 - KEPT_FREE) * tick.period_s));
             }
-            _ => self.report.late.pause(),
+            _ => {
+                self.report.late.pause();
+                self.cast_until = None;
+            }
         }
         Ok(moment)
+    }
+
+    /// Hands over as much casting as there is time for before the next refresh.
+    fn cast(&mut self) -> Result<(), Failure> {
+        let Some(until) = self.cast_until else { return Ok(()) };
+        let least = Duration::from_secs_f64(LEAST_CAST * self.report.period_s);
+        self.casting.refresh(&self.gpu, until.saturating_duration_since(Instant::now()).max(least))
     }
 
     /// Draws a refresh; which hands have taken hold of something.

@@ -1,6 +1,6 @@
 //! The volume, and files to open and to write.
 
-use super::{Asked, Shown};
+use super::{Asked, Beholder, Shown};
 use crate::viewer::command::Command;
 use egui::{ProgressBar, RichText, TextEdit, Ui};
 use std::path::PathBuf;
@@ -67,19 +67,29 @@ pub(super) fn show(fields: &mut Fields, ui: &mut Ui, shown: &Shown<'_>, asked: &
         });
         ui.horizontal(|ui| {
             ui.add(TextEdit::singleline(&mut fields.picture).desired_width(190.0));
-            if ui.button("Picture").on_hover_text("once it is at rest").clicked() {
+            let when = match shown.beholder {
+                Beholder::Camera => "once it is at rest",
+                Beholder::Headset { .. } => "as the eyes see it now",
+            };
+            if ui.button("Picture").on_hover_text(when).clicked() {
                 asked.command(Command::Picture(PathBuf::from(&fields.picture)));
             }
         });
         ui.horizontal(|ui| {
-            if ui.button("Turntable").on_hover_text("numbered pictures of a full turn").clicked() {
-                let path = PathBuf::from(&fields.picture);
-                asked.command(Command::Turntable { pictures: fields.turn_pictures, path });
+            if let Beholder::Camera = shown.beholder {
+                turntable(fields, ui, asked);
             }
-            ui.add(egui::DragValue::new(&mut fields.turn_pictures).range(2..=360).suffix(" pictures"));
             if ui.button("Reload").clicked() {
                 asked.command(Command::Reload);
             }
         });
     });
+}
+
+fn turntable(fields: &mut Fields, ui: &mut Ui, asked: &mut Asked) {
+    if ui.button("Turntable").on_hover_text("numbered pictures of a full turn").clicked() {
+        let path = PathBuf::from(&fields.picture);
+        asked.command(Command::Turntable { pictures: fields.turn_pictures, path });
+    }
+    ui.add(egui::DragValue::new(&mut fields.turn_pictures).range(2..=360).suffix(" pictures"));
 }

@@ -2,8 +2,8 @@
 
 use super::projection::Projection;
 use super::theme::{ACCENT, LINE};
-use super::{Asked, Shown};
-use crate::viewer::state::{Arrangement, Clip, Edit, Plane, State};
+use super::{Asked, Beholder, Shown};
+use crate::viewer::state::{Clip, Edit, Plane, State};
 use egui::{Color32, Painter, Pos2, Rect, Response, Stroke, Ui, Vec2};
 use glam::{DAffine3, DVec3};
 
@@ -44,7 +44,7 @@ pub(super) fn show(
     asked: &mut Asked,
 ) -> bool {
     let clip = &shown.state.clip;
-    let projections = projections(shown.state, area);
+    let projections = projections(shown.beholder, shown.state, area);
     let Some(placement) = shown.placement.filter(|_| clip.has_handles && !projections.is_empty()) else {
         grip.0 = None;
         return false;
@@ -97,16 +97,9 @@ pub(super) fn show(
     true
 }
 
-/// What shows the handles: the picture of each eye side by side, or the view from the middle between them.
-fn projections(state: &State, area: Rect) -> Vec<Projection> {
-    let size = [area.width().max(1.0) as u32, area.height().max(1.0) as u32];
-    let Ok(middle) = state.camera.view(state.stereo.eye_size(size)) else { return Vec::new() };
-    if state.stereo.arrangement != Arrangement::SideBySide {
-        return vec![Projection::new(middle, area)];
-    }
-    let (left, right) = area.split_left_right_at_fraction(0.5);
-    let views = state.stereo.views(&middle, state.camera.distance_m);
-    views.into_iter().zip([left, right]).map(|(view, half)| Projection::new(view, half)).collect()
+/// What shows the handles: the picture, or that of each eye side by side.
+fn projections(beholder: &Beholder, state: &State, area: Rect) -> Vec<Projection> {
+    beholder.seen(state, area).into_iter().map(|(view, area)| Projection::new(view, area)).collect()
 }
 
 /// The handle within reach of the pointer, and in which picture.
@@ -220,7 +213,7 @@ fn draw_plane(painter: &Painter, projection: &Projection, plane: &Plane) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewer::state::Camera;
+    use crate::viewer::state::{Arrangement, Camera};
     use egui::{pos2, vec2};
 
     fn projection() -> Projection {
@@ -246,9 +239,9 @@ mod tests {
     fn side_by_side_each_eye_has_handles_in_its_half() {
         let area = Rect::from_min_size(pos2(20.0, 10.0), vec2(600.0, 300.0));
         let mut state = State::default();
-        assert_eq!(projections(&state, area).len(), 1);
+        assert_eq!(projections(&Beholder::Camera, &state, area).len(), 1);
         state.stereo.arrangement = Arrangement::SideBySide;
-        let eyes = projections(&state, area);
+        let eyes = projections(&Beholder::Camera, &state, area);
         let handle = (Handle::Foot, DVec3::new(0.0, 0.0, 0.4));
         let places: Vec<Pos2> = eyes.iter().map(|eye| eye.place(handle.1).unwrap()).collect();
         let [left, right] = [places[0].x - 20.0, places[1].x - 320.0];

@@ -2,7 +2,7 @@
 
 use super::look::SHADINGS;
 use super::pointer::Tool;
-use super::{Asked, Desk};
+use super::{Asked, Beholder, Desk, Shown};
 use crate::look::ModeName;
 use crate::viewer::command::Command;
 use crate::viewer::state::{Arrangement, Edit, Plane, State, WarpName};
@@ -37,14 +37,10 @@ const fn with_command(
 }
 
 /// Keys that act once.
-const SHORTCUTS: [Shortcut; 19] = [
+const SHORTCUTS: [Shortcut; 15] = [
     plain(Key::Questionmark, "?", "these keys", |desk, _, _| desk.shows_keys = !desk.shows_keys),
     plain(Key::Escape, "Esc", "put this list away", |desk, _, _| desk.shows_keys = false),
     plain(Key::H, "H", "hide or show the panels", |desk, _, _| desk.hides_panels = !desk.hides_panels),
-    plain(Key::O, "O", "drag to orbit", |desk, _, _| desk.tool = Tool::Orbit),
-    plain(Key::F, "F", "drag to look around, wheel to fly", |desk, _, _| desk.tool = Tool::Fly),
-    plain(Key::T, "T", "drag to shift and widen the window of values", |desk, _, _| desk.tool = Tool::Window),
-    plain(Key::Home, "Home", "first view", |_, _, asked| asked.edit(Edit::ResetCamera)),
     plain(Key::M, "M", "next mode", |_, state, asked| {
         asked.edit(Edit::Mode(following(&ModeName::ALL, state.look.mode)));
     }),
@@ -79,42 +75,75 @@ const SHORTCUTS: [Shortcut; 19] = [
     with_command(Key::Q, "Ctrl Q", "end", |_, _, asked| asked.command(Command::Quit)),
 ];
 
-/// Keys that act as long as they are down, and the mouse.
-const OTHERS: [(&str, &str); 9] = [
+/// Those that concern the camera.
+const OF_CAMERA: [Shortcut; 4] = [
+    plain(Key::O, "O", "drag to orbit", |desk, _, _| desk.tool = Tool::Orbit),
+    plain(Key::F, "F", "drag to look around, wheel to fly", |desk, _, _| desk.tool = Tool::Fly),
+    plain(Key::T, "T", "drag to shift and widen the window of values", |desk, _, _| desk.tool = Tool::Window),
+    plain(Key::Home, "Home", "first view", |_, _, asked| asked.edit(Edit::ResetCamera)),
+];
+
+/// The mouse in the panels.
+const IN_PANELS: [(&str, &str); 3] = [
+    ("function: drag", "move a point"),
+    ("function: double click", "add a point"),
+    ("function: right click", "remove a point"),
+];
+
+/// Keys that act as long as they are down, and the mouse in the camera's picture.
+const IN_CAMERAS_PICTURE: [(&str, &str); 6] = [
     ("← → ↑ ↓", "orbit; with Shift: pan"),
     ("W A S D Q E", "fly forward, left, back, right, down, up"),
     ("drag", "orbit, look around or window, as chosen"),
     ("Shift drag", "pan; also with the right button"),
     ("Ctrl drag", "window: right widens, up raises"),
     ("wheel", "come nearer; middle drag, too"),
-    ("function: drag", "move a point"),
-    ("function: double click", "add a point"),
-    ("function: right click", "remove a point"),
 ];
 
+/// The mouse in a headset's picture.
+const IN_HEADSETS_PICTURE: [(&str, &str); 1] = [("drag", "window: right widens, up raises")];
+
+/// Keys that act once on what is shown to somebody.
+fn shortcuts(beholder: &Beholder) -> impl Iterator<Item = &'static Shortcut> {
+    let of_camera: &[Shortcut] = match beholder {
+        Beholder::Camera => &OF_CAMERA,
+        Beholder::Headset { .. } => &[],
+    };
+    SHORTCUTS.iter().chain(of_camera)
+}
+
+/// What else does something, in words.
+fn others(beholder: &Beholder) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let in_picture: &[(&str, &str)] = match beholder {
+        Beholder::Camera => &IN_CAMERAS_PICTURE,
+        Beholder::Headset { .. } => &IN_HEADSETS_PICTURE,
+    };
+    in_picture.iter().chain(&IN_PANELS).copied()
+}
+
 /// Acts on what has been pressed, unless a text is being typed.
-pub(super) fn listen(desk: &mut Desk, ui: &Ui, state: &State, asked: &mut Asked) {
+pub(super) fn listen(desk: &mut Desk, ui: &Ui, shown: &Shown<'_>, asked: &mut Asked) {
     if ui.ctx().text_edit_focused() {
         return;
     }
-    for shortcut in &SHORTCUTS {
+    for shortcut in shortcuts(shown.beholder) {
         let is_pressed = ui.input(|input| {
             let is_command = shortcut.modifiers.command;
             input.key_pressed(shortcut.key) && input.modifiers.command == is_command
         });
         if is_pressed {
-            (shortcut.act)(desk, state, asked);
+            (shortcut.act)(desk, shown.state, asked);
         }
     }
 }
 
 /// Shows the list; whether it stays.
-pub(super) fn show(context: &Context) -> bool {
+pub(super) fn show(context: &Context, beholder: &Beholder) -> bool {
     let mut stays = true;
-    let names = SHORTCUTS.iter().map(|shortcut| (shortcut.name, shortcut.what));
+    let names = shortcuts(beholder).map(|shortcut| (shortcut.name, shortcut.what));
     Window::new("Keys and mouse").open(&mut stays).collapsible(false).resizable(false).show(context, |ui| {
         Grid::new("keys").num_columns(2).spacing([18.0, 4.0]).show(ui, |ui| {
-            for (name, what) in names.chain(OTHERS) {
+            for (name, what) in names.chain(others(beholder)) {
                 ui.label(RichText::new(name).monospace().strong());
                 ui.label(what);
                 ui.end_row();
@@ -147,9 +176,9 @@ mod tests {
 
     #[test]
     fn no_key_does_two_things() {
-        for (index, shortcut) in SHORTCUTS.iter().enumerate() {
-            let clash = SHORTCUTS[..index]
-                .iter()
+        for (index, shortcut) in shortcuts(&Beholder::Camera).enumerate() {
+            let clash = shortcuts(&Beholder::Camera)
+                .take(index)
                 .find(|other| other.key == shortcut.key && other.modifiers == shortcut.modifiers);
             assert!(clash.is_none(), "{}", shortcut.name);
         }

@@ -1,5 +1,6 @@
 //! Panels, picture and keys: they read what is shown and ask for commands; nothing else.
 
+mod beholder;
 mod camera;
 mod clip;
 mod drag;
@@ -18,6 +19,7 @@ mod theme;
 mod toasts;
 mod transfer;
 
+pub(crate) use beholder::Beholder;
 pub(crate) use passes::run_passes;
 pub(crate) use theme::{PANEL, dress};
 
@@ -40,6 +42,7 @@ const SCROLL_BAR: f32 = 10.0;
 /// What the panels show.
 pub(crate) struct Shown<'a> {
     pub(crate) state: &'a State,
+    pub(crate) beholder: &'a Beholder,
     pub(crate) facts: Option<&'a Facts>,
     pub(crate) placement: Option<Placement>,
     pub(crate) progress: Option<Progress>,
@@ -84,7 +87,7 @@ impl Desk {
     /// Lays everything out.
     pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>) -> Pass {
         let mut asked = Asked::default();
-        keys::listen(self, ui, shown.state, &mut asked);
+        keys::listen(self, ui, shown, &mut asked);
         if !self.hides_panels {
             // The window is cleared to the panels' colour.
             let bare = Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT);
@@ -103,13 +106,13 @@ impl Desk {
         }
         let picture = CentralPanel::no_frame()
             .show(ui, |ui| {
-                let area = ui.max_rect();
+                let area = shown.beholder.area(ui.max_rect(), shown.state.stereo.arrangement);
                 picture::show(self, ui, area, shown, &mut asked);
                 area
             })
             .inner;
         if self.shows_keys {
-            self.shows_keys = keys::show(ui.ctx());
+            self.shows_keys = keys::show(ui.ctx(), shown.beholder);
         }
         toasts::show(ui, picture, shown);
         Pass { commands: asked.commands, picture }
@@ -122,9 +125,11 @@ impl Desk {
             transfer::show(&mut self.transfer, ui, shown, asked);
         });
         field::section(ui, "Look", true, |ui| look::show(ui, shown.state, asked));
-        field::section(ui, "Camera", true, |ui| camera::show(&mut self.tool, ui, shown.state, asked));
+        if let Beholder::Camera = shown.beholder {
+            field::section(ui, "Camera", true, |ui| camera::show(&mut self.tool, ui, shown.state, asked));
+        }
         field::section(ui, "Clipping", false, |ui| clip::show(ui, shown.state, asked));
-        field::section(ui, "Stereo", false, |ui| stereo::show(ui, shown.state, asked));
+        field::section(ui, "Stereo", false, |ui| stereo::show(ui, shown, asked));
     }
 }
 
@@ -149,21 +154,42 @@ mod tests {
     use super::*;
     use crate::viewer::script::{Button, Drag};
     use crate::viewer::state::Plane;
-    use egui::{Context, Event, Pos2, RawInput, Vec2};
+    use egui::{
+        Context, Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, Pos2, RawInput, Shape, TouchPhase,
+        Vec2,
+    };
     use wheatstone_core::volume::Grid;
 
     const SIZE: Vec2 = Vec2::new(800.0, 500.0);
 
-    /// What comes of events if so many come with each refresh, and where the picture is.
-    fn play(mut state: State, events: &[Event], per_refresh: usize) -> (State, Rect) {
+    /// What has come of events, where the picture is, and the texts about it.
+    struct Played {
+        state: State,
+        picture: Rect,
+        texts: Vec<String>,
+    }
+
+    /// What comes of events if so many come with each refresh.
+    fn play(beholder: &Beholder, state: State, events: &[Event], per_refresh: usize) -> Played {
+        play_in(SIZE, beholder, state, events, per_refresh)
+    }
+
+    /// The same in a window of some points.
+    fn play_in(
+        size: Vec2,
+        beholder: &Beholder,
+        mut state: State,
+        events: &[Event],
+        per_refresh: usize,
+    ) -> Played {
         let (context, mut desk, timings) = (Context::default(), Desk::new(), Timings::default());
         let grid = Grid::centred([8, 8, 8], [1.0; 3]).unwrap();
         let up = state.look.up.direction();
         let placement = Placement::of_grid(&grid, wheatstone_core::view::world_from_patient(&grid, up));
-        let mut picture = Rect::NOTHING;
+        let (mut picture, mut texts) = (Rect::NOTHING, Vec::new());
         let mut refresh = |number: usize, events: &[Event]| {
             let input = RawInput {
-                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, SIZE)),
+                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
                 time: Some(0.004 * number as f64),
                 focused: true,
                 events: events.to_vec(),
@@ -172,6 +198,7 @@ mod tests {
             let output = run_passes(&context, input, |ui| {
                 let shown = Shown {
                     state: &state,
+                    beholder,
                     facts: None,
                     placement: Some(placement),
                     progress: None,
@@ -187,15 +214,23 @@ mod tests {
                     state.apply(&edit).unwrap();
                 }
             });
+            texts = output.shapes.iter().filter_map(|clipped| text(&clipped.shape)).collect();
             output.drop_without_applying_deltas();
         };
         (0..3).for_each(|number| refresh(number, &[]));
         events.chunks(per_refresh).enumerate().for_each(|(number, events)| refresh(3 + number, events));
-        (state, picture)
+        Played { state, picture, texts }
+    }
+
+    fn text(shape: &Shape) -> Option<String> {
+        match shape {
+            Shape::Text(text) => Some(text.galley.text().to_owned()),
+            _ => None,
+        }
     }
 
     fn after(state: &State, events: &[Event], per_refresh: usize) -> State {
-        play(state.clone(), events, per_refresh).0
+        play(&Beholder::Camera, state.clone(), events, per_refresh).state
     }
 
     fn drag(from: [f32; 2], to: [f32; 2], button: Button, ctrl: bool) -> Vec<Event> {
@@ -244,7 +279,7 @@ mod tests {
         let mut state = State::default();
         state.apply(&Edit::ClipHandles(true)).unwrap();
         state.apply(&Edit::ClipPlane(Some(Plane::default()))).unwrap();
-        let (_, area) = play(state.clone(), &[], 1);
+        let area = play(&Beholder::Camera, state.clone(), &[], 1).picture;
         let size = [area.width() as u32, area.height() as u32];
         let eye = projection::Projection::new(state.camera.view(size).unwrap(), area);
         // The patient is upright: the third axis points up.
@@ -257,6 +292,64 @@ mod tests {
         let events = drag(foot.into(), (foot + egui::vec2(40.0, 10.0)).into(), Button::Left, false);
         let moved = assert_same_however_many_at_a_time(&state, &events);
         assert!(moved.camera == state.camera && moved.clip.plane != state.clip.plane);
+    }
+
+    /// Before both eyes of a headset there is what the first camera sees.
+    fn headset() -> Beholder {
+        let view = State::default().camera.view([640, 720]).unwrap();
+        Beholder::Headset { views: Some(Box::new([view; 2])), period_ms: 11.0 }
+    }
+
+    #[test]
+    fn in_a_headset_nothing_moves_the_camera_and_a_drag_changes_the_window() {
+        let state = State::default();
+        let after = |events: &[Event]| play(&headset(), state.clone(), events, 1).state;
+        let windowed = after(&drag([200.0, 150.0], [250.0, 150.0], Button::Left, false));
+        assert!(windowed.transfer.window != state.transfer.window && windowed.camera == state.camera);
+        let press = |key| Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        let wheel = Event::MouseWheel {
+            unit: MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, 50.0),
+            phase: TouchPhase::Move,
+            source: MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        };
+        let mut events = drag([200.0, 150.0], [250.0, 190.0], Button::Right, false);
+        events.extend([wheel, press(Key::W), press(Key::ArrowLeft), press(Key::Home)]);
+        assert_ne!(play(&Beholder::Camera, state.clone(), &events, 1).state.camera, state.camera);
+        assert_eq!(after(&events), state);
+    }
+
+    #[test]
+    fn handles_are_where_a_headsets_eyes_see_them() {
+        let mut state = State::default();
+        state.apply(&Edit::ClipHandles(true)).unwrap();
+        let area = play(&headset(), state.clone(), &[], 1).picture;
+        assert!((area.width() / area.height() - 640.0 / 720.0).abs() < 1e-4, "{area}");
+        let eye = projection::Projection::new(state.camera.view([640, 720]).unwrap(), area);
+        let above = eye.place(glam::DVec3::Y * (state.clip.box_hi.z - 0.5)).unwrap();
+        let events = drag(above.into(), (above + egui::vec2(0.0, 30.0)).into(), Button::Left, false);
+        let cut = play(&headset(), state.clone(), &events, 1).state;
+        assert!(cut.clip.box_hi.z < state.clip.box_hi.z && cut.transfer == state.transfer);
+    }
+
+    #[test]
+    fn panels_hold_nothing_that_a_headset_does_not_follow() {
+        let mut state = State::default();
+        state.stereo.arrangement = crate::viewer::state::Arrangement::SideBySide;
+        let of_camera = ["Camera", "Refresh, ms"];
+        let holds = |beholder: &Beholder, wanted: &str| {
+            let texts = play_in(egui::vec2(800.0, 1200.0), beholder, state.clone(), &[], 1).texts;
+            texts.iter().any(|text| text == wanted)
+        };
+        assert!(of_camera.iter().all(|text| holds(&Beholder::Camera, text) && !holds(&headset(), text)));
+        assert!(holds(&Beholder::Camera, "40 ms") && holds(&headset(), "11 ms"));
     }
 
     #[test]

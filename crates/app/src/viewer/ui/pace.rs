@@ -2,7 +2,7 @@
 
 use super::field::{choice, rows, slider};
 use super::theme::{ACCENT, ALARM, WELL};
-use super::{Asked, Shown};
+use super::{Asked, Beholder, Shown};
 use crate::viewer::state::{Edit, WarpName};
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 
@@ -17,7 +17,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, asked: &mut Asked) {
     ui.weak(shown.quality);
     let warps = WarpName::ALL.map(|warp| (warp, warp.name()));
     rows(ui, "pace", |ui| {
-        slider(ui, "Refresh, ms", pace.refresh_ms, 5.0..=200.0, asked, Edit::Refresh);
+        if let Beholder::Camera = shown.beholder {
+            slider(ui, "Refresh, ms", pace.refresh_ms, 5.0..=200.0, asked, Edit::Refresh);
+        }
         choice(ui, "Warp", &warps, pace.warp, asked, Edit::Warp);
     });
 }
@@ -27,7 +29,7 @@ fn graph(ui: &mut Ui, shown: &Shown<'_>) {
     let (area, _) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::hover());
     let painter = ui.painter_at(area);
     painter.rect_filled(area, 3.0, WELL);
-    let budget_ms = shown.state.pace.refresh_ms as f32;
+    let budget_ms = shown.beholder.refresh_ms(shown.state);
     let points_per_ms = BUDGET_AT * HEIGHT / budget_ms;
     let frames = shown.timings.recent();
     let step = width / shown.timings.most_recent() as f32;

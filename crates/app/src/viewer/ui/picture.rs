@@ -2,10 +2,10 @@
 
 use super::drag::Drag;
 use super::pointer::scroll;
-use super::{Asked, Desk, Shown, handles, pointer};
+use super::{Asked, Beholder, Desk, Shown, handles, pointer};
 use crate::viewer::command::Command;
 use crate::viewer::state::Edit;
-use egui::{Key, Rect, Sense, Ui};
+use egui::{Key, PointerButton, Rect, Response, Sense, Ui};
 
 /// A second of a held key, as a part of the eye's distance.
 const FLY_PER_S: f64 = 0.6;
@@ -22,10 +22,30 @@ pub(super) fn show(desk: &mut Desk, ui: &mut Ui, area: Rect, shown: &Shown<'_>, 
     let moves = drag.as_ref().map_or(&[][..], |drag| &drag.moves);
     let is_held = handles::show(&mut desk.handles, ui, area, shown, &response, moves, asked);
     if let Some(Drag { button, modifiers, moves }) = drag.filter(|_| !is_held) {
-        for by in moves {
-            asked.edit(pointer::drag(desk.tool, button, modifiers, by / area.height()));
+        let by = moves.into_iter().map(|by| by / area.height());
+        match shown.beholder {
+            Beholder::Camera => {
+                by.for_each(|by| asked.edit(pointer::drag(desk.tool, button, modifiers, by)));
+            }
+            Beholder::Headset { .. } if button == PointerButton::Primary => {
+                by.for_each(|by| asked.edit(pointer::window(by)));
+            }
+            Beholder::Headset { .. } => {}
         }
     }
+    if let Beholder::Camera = shown.beholder {
+        approach(desk, ui, &response, shown, asked);
+        held_keys(ui, shown, asked);
+    }
+    let dropped: Vec<_> =
+        ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+    if !dropped.is_empty() {
+        asked.command(Command::Drop(dropped));
+    }
+}
+
+/// The wheel and a pinch over the picture.
+fn approach(desk: &Desk, ui: &Ui, response: &Response, shown: &Shown<'_>, asked: &mut Asked) {
     if response.hovered() {
         let (points, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
         if points != 0.0 {
@@ -34,12 +54,6 @@ pub(super) fn show(desk: &mut Desk, ui: &mut Ui, area: Rect, shown: &Shown<'_>, 
         if pinch != 1.0 {
             asked.edit(Edit::Zoom(f64::from(pinch)));
         }
-    }
-    held_keys(ui, shown, asked);
-    let dropped: Vec<_> =
-        ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
-    if !dropped.is_empty() {
-        asked.command(Command::Drop(dropped));
     }
 }
 

@@ -43,17 +43,22 @@ impl Tool {
 /// What a drag by parts of the picture's height asks for (`by`: right and down).
 pub(super) fn drag(tool: Tool, button: PointerButton, modifiers: Modifiers, by: Vec2) -> Edit {
     let [right, down] = [f64::from(by.x), f64::from(by.y)];
-    let window = Edit::WindowLevel { shift: -0.5 * down, stretch: (2.0 * right).exp() };
     match button {
-        PointerButton::Primary if modifiers.command => window,
+        PointerButton::Primary if modifiers.command => window(by),
         PointerButton::Primary if !modifiers.shift => match tool {
             Tool::Orbit => Edit::Orbit { right_deg: -ORBIT_DEG * right, up_deg: ORBIT_DEG * down },
             Tool::Fly => Edit::Turn { right_deg: 0.5 * ORBIT_DEG * right, up_deg: -0.5 * ORBIT_DEG * down },
-            Tool::Window => window,
+            Tool::Window => window(by),
         },
         PointerButton::Middle => Edit::Zoom((-2.0 * down).exp()),
         _ => Edit::Pan { right: -right, up: down },
     }
+}
+
+/// The window of values, shifted and widened by a drag by parts of the picture's height (right and down).
+pub(super) fn window(by: Vec2) -> Edit {
+    let [right, down] = [f64::from(by.x), f64::from(by.y)];
+    Edit::WindowLevel { shift: -0.5 * down, stretch: (2.0 * right).exp() }
 }
 
 /// What scrolling by some points asks for.
