@@ -57,7 +57,7 @@ pub(crate) struct QuiltArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
     turntable: Option<u32>,
 
-    /// Write the picture for the panel, too, as OUT_interlaced.png, by the display's calibration (visual.json).
+    /// Write the picture for the panel as well, beside the quilt, by the display's calibration (visual.json).
     #[arg(long, value_name = "CALIBRATION.json")]
     interlace: Option<PathBuf>,
 
