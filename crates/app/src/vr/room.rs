@@ -278,8 +278,8 @@ impl Room {
     /// Hands over as much casting as there is time for before the next refresh.
     fn cast(&mut self) -> Result<(), Failure> {
         let Some(until) = self.cast_until else { return Ok(()) };
-        let least = Duration::from_secs_f64(LEAST_CAST * self.report.period_s);
-        self.casting.refresh(&self.gpu, until.saturating_duration_since(Instant::now()).max(least))
+        let left = until.saturating_duration_since(Instant::now());
+        self.casting.refresh(&self.gpu, time_to_cast(left, self.report.period_s))
     }
 
     /// Draws a refresh; which hands have taken hold of something.
@@ -522,6 +522,11 @@ impl Room {
     }
 }
 
+/// What is left of a refresh of so many seconds, or the least that casting gets.
+fn time_to_cast(left: Duration, period_s: f64) -> Duration {
+    left.max(Duration::from_secs_f64(LEAST_CAST * period_s))
+}
+
 /// The floor, where it is known, and the horizon about the head.
 fn surroundings(tick: &Tick, floor_y_m: Option<f64>) -> Vec<ColoredLine> {
     let Some(Pose { position_m, .. }) = tick.between_eyes() else { return Vec::new() };
@@ -530,4 +535,16 @@ fn surroundings(tick: &Tick, floor_y_m: Option<f64>) -> Vec<ColoredLine> {
         .chain(horizon(position_m))
         .map(|line| ColoredLine::new(line.ends_m, line.alphas, FLOOR_RGB))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn casting_goes_on_where_drawing_takes_a_whole_refresh() {
+        let ms = Duration::from_millis;
+        assert_eq!(time_to_cast(ms(7), 0.011), ms(7));
+        assert!(time_to_cast(Duration::ZERO, 0.011) > ms(1));
+    }
 }

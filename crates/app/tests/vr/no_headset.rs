@@ -252,15 +252,6 @@ fn a_bad_volume_is_refused_and_no_recording_is_left() {
 }
 
 #[test]
-fn casting_goes_on_where_drawing_takes_longer_than_a_refresh() {
-    let folder = folder();
-    let bench = ["bench", "vr", "sphere.nrrd", "--size", "1344x1512", "--refreshes", "100", "--json"];
-    let report = wheatstone(folder.path(), &bench).json();
-    let row = &report["rows"][0];
-    assert!(row["pictures"].as_u64().unwrap() > 1, "{row}");
-}
-
-#[test]
 fn a_recording_without_eyes_ends_when_it_is_told_to() {
     let folder = folder();
     let header = r#"{"wheatstone_recording":1,"units":"s, m, tangents, unit quaternions as x, y, z, w","period_s":0.02,"frusta":[{"left":-1.0,"right":1.0,"down":-1.0,"up":1.0,"near_m":0.01},{"left":-1.0,"right":1.0,"down":-1.0,"up":1.0,"near_m":0.01}]}"#;
