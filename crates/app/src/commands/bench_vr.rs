@@ -1,16 +1,15 @@
 //! `bench vr`: how well refreshes of a headset are kept, and how far what they show is from what they should.
 
 use super::vr::{
-    CHECK_EVERY, CheckArgs, EYE, HeadsetName, check_readable, checked_transfer, clock, depth_layer, layers,
-    open, played, read_recording,
+    CHECK_EVERY, EYE, HeadsetName, PicturesArgs, check_readable, checked_transfer, open, played,
+    read_recording,
 };
 use crate::failure::Failure;
-use crate::layering::LayeringArgs;
 use crate::output::{print, print_json};
 use crate::spec;
 use crate::viewer::Source;
 use crate::viewer::command::Command;
-use crate::viewer::state::{Edit, EyeMethod, WarpName};
+use crate::viewer::state::{Edit, WarpName};
 use crate::vr::{Beside, Connected, Control, Guided, OpenXr, Opening, Replay, Report, Room, run as show};
 use clap::Args;
 use serde_json::json;
@@ -63,34 +62,8 @@ pub(crate) struct VrBenchArgs {
     #[arg(long, value_name = "HZ", default_value_t = 90.0, value_parser = spec::within(1.0..=1000.0), allow_negative_numbers = true)]
     refresh_hz: f64,
 
-    /// Without a headset, draw one refresh after the other as fast as it goes: the clock is simulated, and none is left out.
-    #[arg(long)]
-    patient: bool,
-
-    /// End after so many refreshes.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    refreshes: Option<u64>,
-
-    /// Width and height of the eyes' pictures, as parts of what the headset's software recommends [default: 1; on software Vulkan as
-    /// much as there is time for].
-    #[arg(long, value_name = "PART", value_parser = spec::within(0.1..=4.0), allow_negative_numbers = true)]
-    image_scale: Option<f64>,
-
     #[command(flatten)]
-    layering: LayeringArgs,
-
-    /// Where the eyes' pictures come from; canted displays need two casts, and get them [default: as a saved view says, else
-    /// two-casts].
-    #[arg(long, value_enum)]
-    eye_method: Option<EyeMethod>,
-
-    /// Give the runtime the depths of first hits along with pictures, by which it moves them to a pose that is newer still: it takes
-    /// them for surfaces, which harms translucent volumes.
-    #[arg(long)]
-    depth_layer: bool,
-
-    #[command(flatten)]
-    check: CheckArgs,
+    pictures: PicturesArgs,
 
     /// Print one JSON object on standard output instead of lines.
     #[arg(long)]
@@ -141,8 +114,7 @@ impl VrBenchArgs {
         let source = Source { file: Some(volume.to_owned()), layout: None };
         let recording = self.replay.as_deref().map(read_recording).transpose()?;
         let mut commands: Vec<Command> = vec![Edit::Warp(warp).into(), Edit::Shading(self.shading).into()];
-        commands.extend(layers(&self.layering)?);
-        commands.extend(self.eye_method.map(|method| Edit::EyeMethod(method).into()));
+        commands.extend(self.pictures.commands()?);
         commands.extend(self.tf.clone().map(Command::Preset));
         let opening = |(session, arrived), stand| Opening {
             session,
@@ -152,8 +124,8 @@ impl VrBenchArgs {
             scale: Scale::Human,
             stand,
             has_floor: false,
-            checks: self.check.checking(Some(CHECK_EVERY)),
-            refreshes: self.refreshes,
+            checks: self.pictures.check.checking(Some(CHECK_EVERY)),
+            refreshes: self.pictures.refreshes,
         };
         match self.headset {
             HeadsetName::None => {
@@ -165,9 +137,9 @@ impl VrBenchArgs {
                     gpu,
                     played,
                     display,
-                    clock(self.patient),
+                    self.pictures.clock(),
                     self.size,
-                    depth_layer(self.depth_layer),
+                    self.pictures.depth_layer(),
                 )?;
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
@@ -176,9 +148,9 @@ impl VrBenchArgs {
                 let connected = Connected::connect()?;
                 let loaded = open(source, connected.gpu())?;
                 let (played, stand) = played(recording, &loaded.1);
-                let depth_layer = depth_layer(self.depth_layer);
-                let mut headset =
-                    Guided::new(OpenXr::begin(connected, depth_layer, self.image_scale)?, played);
+                let PicturesArgs { image_scale, .. } = self.pictures;
+                let session = OpenXr::begin(connected, self.pictures.depth_layer(), image_scale)?;
+                let mut headset = Guided::new(session, played);
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }
         }

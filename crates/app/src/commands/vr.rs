@@ -85,9 +85,23 @@ pub(crate) struct VrArgs {
     #[arg(long)]
     no_mirror: bool,
 
+    #[command(flatten)]
+    pictures: PicturesArgs,
+
+    /// Print what was measured as one JSON object when it ends.
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    raw: RawArgs,
+}
+
+/// How refreshes are drawn, how many, and which are compared.
+#[derive(Debug, Args)]
+pub(super) struct PicturesArgs {
     /// End after so many refreshes.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    refreshes: Option<u64>,
+    pub(super) refreshes: Option<u64>,
 
     /// Without a headset, draw one refresh after the other as fast as it goes: the clock is simulated, and none is left out.
     #[arg(long)]
@@ -96,7 +110,7 @@ pub(crate) struct VrArgs {
     /// Width and height of the eyes' pictures, as parts of what the headset's software recommends [default: 1; on software Vulkan as
     /// much as there is time for].
     #[arg(long, value_name = "PART", value_parser = spec::within(0.1..=4.0), allow_negative_numbers = true)]
-    image_scale: Option<f64>,
+    pub(super) image_scale: Option<f64>,
 
     #[command(flatten)]
     layering: LayeringArgs,
@@ -112,14 +126,26 @@ pub(crate) struct VrArgs {
     depth_layer: bool,
 
     #[command(flatten)]
-    check: CheckArgs,
+    pub(super) check: CheckArgs,
+}
 
-    /// Print what was measured as one JSON object when it ends.
-    #[arg(long)]
-    json: bool,
+impl PicturesArgs {
+    /// What flags ask for, whatever a saved view says.
+    pub(super) fn commands(&self) -> Result<impl Iterator<Item = Command>, Failure> {
+        let layers = Layers::from(&self.layering.resolve()?);
+        let layers = self.layering.is_given().then_some(Edit::Layers(layers).into());
+        Ok(layers.into_iter().chain(self.eye_method.map(|method| Edit::EyeMethod(method).into())))
+    }
 
-    #[command(flatten)]
-    raw: RawArgs,
+    /// When refreshes come without a headset.
+    pub(super) fn clock(&self) -> Clock {
+        if self.patient { Clock::Patient } else { Clock::Real }
+    }
+
+    /// Whether depths are given along with pictures.
+    pub(super) fn depth_layer(&self) -> DepthLayer {
+        if self.depth_layer { DepthLayer::With } else { DepthLayer::Without }
+    }
 }
 
 /// When what is shown is compared with direct renders from where the eyes were, after all is over.
@@ -160,8 +186,7 @@ pub(super) enum HeadsetName {
 pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let source = Source { file: args.file.clone(), layout: args.raw.layout() };
     let mut commands: Vec<Command> = vec![Edit::Warp(args.warp).into()];
-    commands.extend(layers(&args.layering)?);
-    commands.extend(args.eye_method.map(|method| Edit::EyeMethod(method).into()));
+    commands.extend(args.pictures.commands()?);
     commands.extend(args.tf.clone().map(Command::Preset));
     let record = args.record.as_deref().map(Record::begin).transpose()?;
     let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
@@ -175,8 +200,8 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         scale,
         stand,
         has_floor: args.floor,
-        checks: args.check.checking(None),
-        refreshes: args.refreshes,
+        checks: args.pictures.check.checking(None),
+        refreshes: args.pictures.refreshes,
     };
     let shown = match args.headset {
         HeadsetName::None => {
@@ -186,7 +211,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
             let display = Display::default();
             let size = spec::picture_size(EYE).map_err(Failure::input)?;
             let mut headset =
-                Replay::new(gpu, played, display, clock(args.patient), size, depth_layer(args.depth_layer))?;
+                Replay::new(gpu, played, display, args.pictures.clock(), size, args.pictures.depth_layer())?;
             company.interrupt.watch()?;
             show(&mut headset, opening(loaded, stand, Control::Hands), &mut company)
         }
@@ -198,7 +223,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
                 company.mirror = mirror(&connected);
             }
             let control = if company.mirror.is_some() { Control::HandsAndWindow } else { Control::Hands };
-            let headset = OpenXr::begin(connected, depth_layer(args.depth_layer), args.image_scale)?;
+            let headset = OpenXr::begin(connected, args.pictures.depth_layer(), args.pictures.image_scale)?;
             company.interrupt.watch()?;
             match recording.map(Played::Recording) {
                 Some(played) => {
@@ -218,17 +243,6 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         print(&report.to_lines())?;
     }
     Ok(())
-}
-
-/// Whether depths are given along with pictures.
-pub(super) fn depth_layer(is_asked_for: bool) -> DepthLayer {
-    if is_asked_for { DepthLayer::With } else { DepthLayer::Without }
-}
-
-/// What flags say of layers, whatever a saved view says.
-pub(super) fn layers(args: &LayeringArgs) -> Result<Option<Command>, Failure> {
-    let layers = Layers::from(&args.resolve()?);
-    Ok(args.is_given().then_some(Edit::Layers(layers).into()))
 }
 
 /// A window beside the headset, if there is a display; what is in its way is told.
@@ -266,22 +280,18 @@ pub(super) fn played(
     }
 }
 
-/// When refreshes come without a headset.
-pub(super) fn clock(is_patient: bool) -> Clock {
-    if is_patient { Clock::Patient } else { Clock::Real }
-}
-
 /// A file that is not there is told before a runtime that is not.
 pub(super) fn check_readable(path: Option<&Path>) -> Result<(), Failure> {
-    let Some(path) = path else { return Ok(()) };
-    let opened = File::open(path).with_context(|| format!("{}", path.display()));
-    opened.map(drop).map_err(Failure::Input)
+    path.map_or(Ok(()), |path| opened(path).map(drop))
+}
+
+fn opened(path: &Path) -> Result<File, Failure> {
+    File::open(path).with_context(|| format!("{}", path.display())).map_err(Failure::Input)
 }
 
 pub(super) fn read_recording(path: &Path) -> Result<Recording, Failure> {
-    let told = || format!("{}", path.display());
-    let file = File::open(path).with_context(told).map_err(Failure::Input)?;
-    Recording::read(BufReader::new(file)).with_context(told).map_err(Failure::Input)
+    let recording = Recording::read(BufReader::new(opened(path)?));
+    recording.with_context(|| format!("{}", path.display())).map_err(Failure::Input)
 }
 
 pub(super) fn checked_transfer(text: &str) -> Result<String, String> {
