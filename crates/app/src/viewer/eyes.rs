@@ -9,9 +9,9 @@ use wheatstone_core::budget::Quality;
 use wheatstone_core::headset::HiddenArea;
 use wheatstone_core::view::{Frustum, PixelRect, Projection, View};
 use wheatstone_core::warp::{GridSettings, Overlap, VolumetricSettings, WarpError};
-use wheatstone_render::Gpu;
 use wheatstone_render::live::Front;
 use wheatstone_render::warp::{Canvas, Shown, Warps};
+use wheatstone_render::{Gpu, GpuError};
 
 /// Of warped pictures: what a display shows, and what is interpolated fastest.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -282,20 +282,28 @@ impl Eyes {
         if let Some(kept) = kept.filter(|kept| kept.size() == size) {
             return Ok(kept);
         }
-        let [width, height] = size;
-        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-            label: Some("eye"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        gpu.check()?;
-        Ok(Canvas::new(texture.create_view(&wgpu::TextureViewDescriptor::default())))
+        Ok(room(gpu, size, FORMAT)?)
     }
+}
+
+/// Something that warps are drawn to and passes sample.
+pub(crate) fn room(
+    gpu: &Gpu,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+) -> Result<Canvas, GpuError> {
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("warped"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    gpu.check()?;
+    Ok(Canvas::new(texture.create_view(&wgpu::TextureViewDescriptor::default())))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! How far away what the eyes are shown is, for runtimes that move pictures about by it.
 
 use crate::failure::Failure;
+use crate::viewer::eyes::room;
 use wheatstone_core::view::View;
 use wheatstone_core::warp::{GridSettings, WarpError};
 use wheatstone_render::Gpu;
@@ -36,7 +37,10 @@ impl Depths {
             let shown = Shown::new(target, cast_from, front.prepared());
             let view = View { size: view.size.map(|side| side.div_ceil(COARSER)), ..*view };
             let kept = canvas.take().filter(|kept| kept.size() == view.size);
-            let into = canvas.insert(kept.unwrap_or_else(|| room(gpu, view.size)));
+            let into = canvas.insert(match kept {
+                Some(kept) => kept,
+                None => room(gpu, view.size, GridDepths::FORMAT)?,
+            });
             self.warps
                 .encode(gpu, &mut encoder, &shown, &view, GridSettings::default(), into)
                 .map_err(|error: WarpError| Failure::Internal(error.into()))?;
@@ -46,18 +50,4 @@ impl Depths {
         let [left, right] = self.canvases.each_ref().map(|canvas| canvas.as_ref().map(Canvas::view).cloned());
         Ok(left.zip(right).map(<[_; 2]>::from))
     }
-}
-
-fn room(gpu: &Gpu, [width, height]: [u32; 2]) -> Canvas {
-    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-        label: Some("depths"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: GridDepths::FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    Canvas::new(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
