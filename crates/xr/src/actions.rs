@@ -4,7 +4,10 @@ use crate::bindings::{Input, PROFILES, Profile, user_path};
 use crate::error::{Called, XrError};
 use crate::space::World;
 use openxr as xr;
-use wheatstone_core::headset::{Hand, Side};
+use wheatstone_core::headset::{Hand, Pinch, Side};
+
+/// A thumb-stick that is held there.
+const TO_THE_RIGHT: xr::Vector2f = xr::Vector2f { x: 1.0, y: 0.0 };
 
 /// The actions of a session, bound to the parts of controllers.
 pub(crate) struct Actions {
@@ -12,11 +15,13 @@ pub(crate) struct Actions {
     grip: xr::Action<xr::Posef>,
     aim: xr::Action<xr::Posef>,
     squeeze: xr::Action<f32>,
+    select: xr::Action<f32>,
     trigger: xr::Action<f32>,
     stick: xr::Action<xr::Vector2f>,
     pad: xr::Action<xr::Vector2f>,
     pad_pressed: xr::Action<bool>,
     menu: xr::Action<bool>,
+    next: xr::Action<bool>,
     haptic: xr::Action<xr::Haptic>,
     sides: [OneSide; 2],
 }
@@ -46,11 +51,13 @@ impl Actions {
             grip,
             aim,
             squeeze: action(&set, &paths, "squeeze", "Take hold")?,
+            select: action(&set, &paths, "select", "Take hold of what is near")?,
             trigger: action(&set, &paths, "trigger", "Drag the crop box")?,
             stick: action(&set, &paths, "stick", "Presets and window")?,
             pad: action(&set, &paths, "pad", "Presets and window (track pad)")?,
             pad_pressed: action(&set, &paths, "pad_pressed", "Presets and window (track pad pressed)")?,
-            menu: action(&set, &paths, "menu", "Menu")?,
+            menu: action(&set, &paths, "menu", "Bring back")?,
+            next: action(&set, &paths, "next", "Next preset")?,
             haptic: action(&set, &paths, "haptic", "Felt tick")?,
             sides: [left?, right?],
             set,
@@ -79,6 +86,8 @@ impl Actions {
         match input {
             Input::Grip => xr::Binding::new(&self.grip, path),
             Input::Aim => xr::Binding::new(&self.aim, path),
+            Input::Select => xr::Binding::new(&self.select, path),
+            Input::Next => xr::Binding::new(&self.next, path),
             Input::Squeeze => xr::Binding::new(&self.squeeze, path),
             Input::Trigger => xr::Binding::new(&self.trigger, path),
             Input::Stick => xr::Binding::new(&self.stick, path),
@@ -110,15 +119,24 @@ impl Actions {
             .map(|action| state(action, session, of.path).map(|value| value.unwrap_or(0.0)));
         let pad_pressed = state(&self.pad_pressed, session, of.path)?.unwrap_or(false);
         let stick_action = if pad_pressed { &self.pad } else { &self.stick };
-        let stick = state(stick_action, session, of.path)?.unwrap_or_default();
+        let stick = if state(&self.next, session, of.path)?.unwrap_or(false) {
+            TO_THE_RIGHT
+        } else {
+            state(stick_action, session, of.path)?.unwrap_or_default()
+        };
+        let aim = world.locate(&of.aim, time)?;
+        let selected = state(&self.select, session, of.path)?;
+        let pinch = aim
+            .zip(selected)
+            .map(|(aim, closed)| Pinch { position_m: aim.position_m, closed: within(closed, 0.0) });
         Ok(Some(Hand {
             grip: world.locate(&of.grip, time)?,
-            aim: world.locate(&of.aim, time)?,
+            aim,
             squeeze: within(squeeze?, 0.0),
             trigger: within(trigger?, 0.0),
             stick: [within(stick.x, -1.0), within(stick.y, -1.0)],
             menu: state(&self.menu, session, of.path)?.unwrap_or(false),
-            pinch: None,
+            pinch,
         }))
     }
 

@@ -11,6 +11,8 @@ pub(crate) enum Input {
     Aim,
     /// Squeezing.
     Squeeze,
+    /// The one button of a controller that has no other for the hand: it does as the fingers of a bare hand do.
+    Select,
     /// The trigger.
     Trigger,
     /// The thumb-stick.
@@ -21,6 +23,8 @@ pub(crate) enum Input {
     PadPressed,
     /// The menu button.
     Menu,
+    /// A button that stands in for a thumb-stick that is held to the right.
+    Next,
     /// The motor.
     Haptic,
 }
@@ -63,13 +67,13 @@ const MENU: (Input, &str) = (Input::Menu, "input/menu/click");
 
 /// Every controller that is known. Runtimes map others to these.
 ///
-/// The simple controller has one button beside the menu's. It squeezes: taking hold of the volume is
-/// what no hand can do without. Controllers whose menu button is the runtime's own have it on the upper face button.
+/// The simple controller has one button beside the menu's: it takes hold as bare fingers do, of a face that it is near or else of the
+/// volume. The right one's menu button goes to the next preset. Controllers whose menu button is the runtime's own have it on the upper face button.
 pub(crate) const PROFILES: [Profile; 5] = [
     Profile {
         path: "/interaction_profiles/khr/simple_controller",
-        both: &[GRIP, AIM, (Input::Squeeze, "input/select/click"), MENU, HAPTIC],
-        one: &[],
+        both: &[GRIP, AIM, (Input::Select, "input/select/click"), HAPTIC],
+        one: &[(Side::Left, Input::Menu, "input/menu/click"), (Side::Right, Input::Next, "input/menu/click")],
     },
     Profile {
         path: "/interaction_profiles/valve/index_controller",
@@ -120,16 +124,26 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn every_controller_can_hold_and_point_with_either_hand() {
+    fn every_controller_can_hold_drag_and_point_with_either_hand_and_choose() {
         for profile in &PROFILES {
             let bindings: Vec<_> = profile.bindings().collect();
+            let has = |side: Side, inputs: &[Input]| {
+                bindings.iter().any(|(what, path)| inputs.contains(what) && path.starts_with(user_path(side)))
+            };
             for side in Side::BOTH {
-                for input in [Input::Grip, Input::Aim, Input::Squeeze, Input::Menu, Input::Haptic] {
-                    let bound =
-                        |(what, path): &(Input, String)| *what == input && path.starts_with(user_path(side));
-                    assert!(bindings.iter().any(bound), "{} {side:?} {input:?}", profile.path);
+                for inputs in [
+                    &[Input::Grip][..],
+                    &[Input::Aim],
+                    &[Input::Haptic],
+                    &[Input::Squeeze, Input::Select],
+                    &[Input::Trigger, Input::Select],
+                ] {
+                    assert!(has(side, inputs), "{} {side:?} {inputs:?}", profile.path);
                 }
             }
+            let either = |inputs: &[Input]| Side::BOTH.into_iter().any(|side| has(side, inputs));
+            assert!(either(&[Input::Menu]), "{} cannot call the volume back", profile.path);
+            assert!(either(&[Input::Stick, Input::Pad, Input::Next]), "{} cannot choose", profile.path);
         }
     }
 

@@ -157,6 +157,11 @@ impl Session {
         Ok(self.phase())
     }
 
+    /// Whether eyes see the room where pictures are transparent.
+    pub fn sees_through(&self) -> bool {
+        self.blend_mode != xr::EnvironmentBlendMode::OPAQUE
+    }
+
     /// Whether there are frames to make, as of the last [`Session::poll`].
     pub fn phase(&self) -> Phase {
         match self.states.ended() {

@@ -116,6 +116,7 @@ impl VrBenchArgs {
         let mut commands: Vec<Command> = vec![Edit::Warp(warp).into(), Edit::Shading(self.shading).into()];
         commands.extend(self.pictures.commands()?);
         commands.extend(self.tf.clone().map(Command::Preset));
+        let checks = self.pictures.check.checking(Some(CHECK_EVERY));
         let opening = |(session, arrived), stand| Opening {
             session,
             arrived,
@@ -124,7 +125,7 @@ impl VrBenchArgs {
             scale: Scale::Human,
             stand,
             has_floor: false,
-            checks: self.pictures.check.checking(Some(CHECK_EVERY)),
+            checks: checks.clone(),
             refreshes: self.pictures.refreshes,
         };
         match self.headset {
@@ -148,8 +149,7 @@ impl VrBenchArgs {
                 let connected = Connected::connect()?;
                 let loaded = open(source, connected.gpu())?;
                 let (played, stand) = played(recording, &loaded.1);
-                let PicturesArgs { image_scale, .. } = self.pictures;
-                let session = OpenXr::begin(connected, self.pictures.depth_layer(), image_scale)?;
+                let session = OpenXr::begin(connected, self.pictures.of_pictures(checks.as_ref()))?;
                 let mut headset = Guided::new(session, played);
                 show(&mut headset, opening(loaded, stand), &mut Nothing)
             }

@@ -14,8 +14,8 @@ use crate::viewer::session::{Session, Showing};
 use crate::viewer::state::{Edit, EyeMethod, Layers, WarpName};
 use crate::volume_args::RawArgs;
 use crate::vr::{
-    Beside, Checking, Clock, Connected, Control, DepthLayer, Guided, Mirror, OpenXr, Opening, Played, Record,
-    Replay, Room, load, run as show,
+    Beside, Checking, Clock, Connected, Control, DepthLayer, Guided, Mirror, OfPictures, OpenXr, Opening,
+    Played, Record, Replay, Room, load, run as show,
 };
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
@@ -110,7 +110,7 @@ pub(super) struct PicturesArgs {
     /// Width and height of the eyes' pictures, as parts of what the headset's software recommends [default: 1; on software Vulkan as
     /// much as there is time for].
     #[arg(long, value_name = "PART", value_parser = spec::within(0.1..=4.0), allow_negative_numbers = true)]
-    pub(super) image_scale: Option<f64>,
+    image_scale: Option<f64>,
 
     #[command(flatten)]
     layering: LayeringArgs,
@@ -142,6 +142,12 @@ impl PicturesArgs {
         if self.patient { Clock::Patient } else { Clock::Real }
     }
 
+    /// What a runtime is to take, read where refreshes are compared.
+    pub(super) fn of_pictures(&self, checks: Option<&Checking>) -> OfPictures {
+        let is_read = checks.is_some();
+        OfPictures { depth_layer: self.depth_layer(), image_scale: self.image_scale, is_read }
+    }
+
     /// Whether depths are given along with pictures.
     pub(super) fn depth_layer(&self) -> DepthLayer {
         if self.depth_layer { DepthLayer::With } else { DepthLayer::Without }
@@ -159,7 +165,7 @@ pub(super) struct CheckArgs {
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=1000))]
     checks: u16,
 
-    /// Write what each eye was shown of the volume at refreshes that are compared, over black, to a folder.
+    /// Write what each eye was shown at refreshes that are compared to a folder.
     #[arg(long, value_name = "DIR")]
     check_pictures: Option<PathBuf>,
 }
@@ -192,6 +198,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
     let recording = args.replay.as_deref().map(read_recording).transpose()?;
     let scale = if args.life_size { Scale::True } else { Scale::Human };
+    let checks = args.pictures.check.checking(None);
     let opening = |(session, arrived): (Session, _), stand, control| Opening {
         session,
         arrived,
@@ -200,7 +207,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         scale,
         stand,
         has_floor: args.floor,
-        checks: args.pictures.check.checking(None),
+        checks: checks.clone(),
         refreshes: args.pictures.refreshes,
     };
     let shown = match args.headset {
@@ -223,7 +230,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
                 company.mirror = mirror(&connected);
             }
             let control = if company.mirror.is_some() { Control::HandsAndWindow } else { Control::Hands };
-            let headset = OpenXr::begin(connected, args.pictures.depth_layer(), args.pictures.image_scale)?;
+            let headset = OpenXr::begin(connected, args.pictures.of_pictures(checks.as_ref()))?;
             company.interrupt.watch()?;
             match recording.map(Played::Recording) {
                 Some(played) => {

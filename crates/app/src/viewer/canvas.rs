@@ -1,9 +1,7 @@
 //! What is drawn on: a window, or a texture that stands in for one.
 
 use crate::failure::Failure;
-use crate::picture::{Bits, write_png};
 use anyhow::anyhow;
-use std::path::Path;
 use wheatstone_core::image::RgbImage;
 use wheatstone_render::{Gpu, GpuError};
 
@@ -146,8 +144,8 @@ pub(crate) fn texture(
     Ok(texture)
 }
 
-/// Writes a texture of one of the canvas's formats to a PNG file; waits for the device.
-pub(crate) fn write_texture(gpu: &Gpu, texture: &wgpu::Texture, path: &Path) -> Result<(), Failure> {
+/// Reads a texture of one of the canvas's formats; waits for the device.
+pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<RgbImage, Failure> {
     let texels: Vec<[u8; 4]> = gpu.read_texture(texture)?;
     let is_blue_first = texture.format() == wgpu::TextureFormat::Bgra8Unorm;
     let rgb = |&[a, b, c, _]: &[u8; 4]| {
@@ -155,5 +153,5 @@ pub(crate) fn write_texture(gpu: &Gpu, texture: &wgpu::Texture, path: &Path) -> 
         rgb.map(|channel| f32::from(channel) / 255.0)
     };
     let rgb = texels.iter().map(rgb).collect();
-    write_png(path, &RgbImage { width: texture.width(), height: texture.height(), rgb }, Bits::Eight)
+    Ok(RgbImage { width: texture.width(), height: texture.height(), rgb })
 }

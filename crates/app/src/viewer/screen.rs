@@ -1,11 +1,12 @@
 //! Draws a refresh: pictures, then panels over them.
 
-use super::canvas::{texture, write_texture};
+use super::canvas::{read_texture, texture};
 use super::capture::{Capture, Subject};
 use super::show::{Area, Show};
 use super::state::Arrangement;
 use super::ui::PANEL;
 use crate::failure::Failure;
+use crate::picture::{Bits, write_png};
 use egui::epaint::ClippedPrimitive;
 use egui::{FullOutput, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
@@ -116,7 +117,7 @@ impl Screen {
                 self.draw(gpu, &sheet, pictures, panels);
             }
         }
-        write_texture(gpu, &texture, &capture.path)
+        write_png(&capture.path, &read_texture(gpu, &texture)?, Bits::Eight)
     }
 
     /// Draws pictures alone.

@@ -6,11 +6,11 @@ use super::facts::Facts;
 use super::job::{Progress, Waker};
 use super::loading::{Arrived, Destination, Loading, Source, Step};
 use super::notes::Notes;
-use super::state::{Clip, Edit, State};
+use super::state::{Clip, Edit, State, Transfer};
 use crate::failure::Failure;
 use crate::output::check_writable;
 use crate::text_file::read_text_file;
-use crate::transfer_spec::{self, TransferSpec};
+use crate::transfer_spec;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use wheatstone_core::transfer::Preset;
@@ -23,6 +23,8 @@ const MOST_VIEW_BYTES: u64 = 4 << 20;
 /// The viewer without window and device.
 pub(crate) struct Session {
     state: State,
+    /// The transfer function that was chosen by its name last, unless it was edited since other than by its window.
+    preset: Option<String>,
     facts: Option<Facts>,
     source: Source,
     pending: Option<Pending>,
@@ -37,6 +39,8 @@ pub(crate) struct Session {
 /// What is to be shown of a volume that has arrived.
 pub(crate) struct Showing {
     pub(crate) state: State,
+    /// Name of the transfer function, if it has one.
+    preset: Option<String>,
     facts: Facts,
     source: Source,
 }
@@ -62,6 +66,7 @@ impl Session {
         let source = Source { file: source.file.as_deref().map(absolute), ..source };
         let mut session = Self {
             state: State::default(),
+            preset: None,
             facts: None,
             source: source.clone(),
             pending: None,
@@ -91,6 +96,11 @@ impl Session {
     /// What is shown.
     pub(crate) fn state(&self) -> &State {
         &self.state
+    }
+
+    /// Name of the transfer function, as long as it is the one that was chosen by it.
+    pub(crate) fn preset(&self) -> Option<&str> {
+        self.preset.as_deref()
     }
 
     /// The volume that is shown, if there is one.
@@ -143,6 +153,7 @@ impl Session {
     pub(crate) fn show(&mut self, showing: Showing) {
         self.notes.done(format!("showing {}", showing.facts.name));
         self.state = showing.state;
+        self.preset = showing.preset;
         self.source = showing.source;
         self.facts = Some(showing.facts);
     }
@@ -194,7 +205,7 @@ impl Session {
 
     fn try_perform(&mut self, command: &Command) -> Result<(), Failure> {
         match command {
-            Command::Edit(edit) => self.state.apply(edit).map_err(Failure::input),
+            Command::Edit(edit) => self.edit(edit),
             Command::Open(path) => self.open(path),
             Command::Drop(paths) => self.open_first(paths),
             Command::OpenShipped => self.load(Source { file: None, layout: None }, None),
@@ -211,12 +222,22 @@ impl Session {
                 self.turntable = Some(Turntable::new(*pictures, path.clone()).map_err(Failure::input)?);
                 Ok(())
             }
-            Command::Preset(name) => self.preset(name),
+            Command::Preset(name) => self.choose_preset(name),
             Command::Quit => {
                 self.has_quit = true;
                 Ok(())
             }
         }
+    }
+
+    fn edit(&mut self, edit: &Edit) -> Result<(), Failure> {
+        let before = self.state.transfer.clone();
+        self.state.apply(edit).map_err(Failure::input)?;
+        let window = self.state.transfer.window;
+        if (Transfer { window, ..before }) != self.state.transfer {
+            self.preset = None;
+        }
+        Ok(())
     }
 
     /// Refuses what needs a volume if there is none and none is on its way.
@@ -267,17 +288,19 @@ impl Session {
     }
 
     fn showing(&self, source: Source, view: Option<State>, facts: &Facts) -> Result<Showing, Failure> {
-        let state = match view {
-            Some(view) => view,
+        let (state, preset) = match view {
+            Some(view) => (view, None),
             None => {
+                let suiting = suiting(&source);
                 let clip = Clip { has_handles: self.state.clip.has_handles, ..Clip::default() };
                 let mut state = self.state.clone();
                 (state.file, state.layout) = (source.file.clone(), source.layout.clone());
-                (state.transfer, state.clip) = (facts.transfer(&suiting(&source))?, clip);
-                state
+                (state.transfer, state.clip) =
+                    (facts.transfer(&transfer_spec::parse(suiting).map_err(Failure::input)?)?, clip);
+                (state, Some(suiting.to_owned()))
             }
         };
-        Ok(Showing { state, facts: facts.clone(), source })
+        Ok(Showing { state, preset, facts: facts.clone(), source })
     }
 
     fn save(&mut self, path: &Path) -> Result<(), Failure> {
@@ -288,10 +311,12 @@ impl Session {
         Ok(())
     }
 
-    fn preset(&mut self, name: &str) -> Result<(), Failure> {
+    fn choose_preset(&mut self, name: &str) -> Result<(), Failure> {
         let facts = self.facts.as_ref().ok_or_else(|| Failure::input("no volume is shown yet"))?;
         let transfer = facts.transfer(&transfer_spec::parse(name).map_err(Failure::input)?)?;
-        self.state.apply(&Edit::Transfer(transfer)).map_err(Failure::input)
+        self.state.apply(&Edit::Transfer(transfer)).map_err(Failure::input)?;
+        self.preset = Some(name.to_owned());
+        Ok(())
     }
 }
 
@@ -304,11 +329,11 @@ fn is_view(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
-/// The transfer function that a volume is shown with at first.
-fn suiting(source: &Source) -> TransferSpec {
+/// Name of the transfer function that a volume is shown with at first.
+fn suiting(source: &Source) -> &'static str {
     match source.file {
-        None => TransferSpec::Preset(Preset::MriBrainT1),
-        Some(_) => TransferSpec::Automatic,
+        None => Preset::MriBrainT1.name(),
+        Some(_) => "auto",
     }
 }
 

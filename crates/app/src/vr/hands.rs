@@ -1,13 +1,19 @@
 //! What hands do, as the viewer's edits and commands.
 
 use crate::viewer::command::Command;
+use crate::viewer::session::Session;
 use crate::viewer::state::{Clip, Edit, Plane, State};
 use glam::DVec3;
 use wheatstone_core::headset::{Changes, Hand, Handle, Interaction, Stand, Tick};
 use wheatstone_core::scene::Placement;
 use wheatstone_core::transfer::Preset;
+use wheatstone_core::volume::Window;
 
 use super::stage::ColoredLine;
+
+/// How many times as narrow and as wide as all values hands make a window.
+const MOST_NARROWED: f64 = 1000.0;
+const MOST_WIDENED: f64 = 10.0;
 
 /// Length of the ray of a hand that points at nothing, metres.
 const RAY_M: f64 = 0.4;
@@ -22,27 +28,27 @@ pub(crate) struct Hands {
     pub(crate) interaction: Interaction,
     /// What has been shown by the state's clip so far.
     shown: Clip,
-    /// Number of the preset that the stick is at; none before it has gone to one.
-    preset: Option<usize>,
 }
 
 impl Hands {
     /// At a volume that stands somewhere.
     pub(crate) fn new(interaction: Interaction, state: &State) -> Self {
-        let mut hands = Self { interaction, shown: state.clip, preset: None };
+        let mut hands = Self { interaction, shown: state.clip };
         hands.interaction.show_upright(&state.clip.scene());
         hands
     }
 
     /// What the hands do next, as what is to be done to the state, and which of them have taken hold of something.
-    pub(crate) fn update(&mut self, tick: &Tick, state: &State) -> (Vec<Command>, [bool; 2]) {
+    pub(crate) fn update(&mut self, tick: &Tick, session: &Session) -> (Vec<Command>, [bool; 2]) {
+        let state = session.state();
         if state.clip != self.shown {
             self.interaction.show_upright(&state.clip.scene());
         }
         let Ok(window) = state.transfer.window() else { return (Vec::new(), [false; 2]) };
         let changes = self.interaction.update(tick, window);
         let mut commands = Vec::new();
-        if changes.window != window {
+        let is_useful = session.facts().is_none_or(|facts| is_useful(changes.window, facts.full_window));
+        if changes.window != window && is_useful {
             commands.push(Edit::Window([changes.window.lo(), changes.window.hi()]).into());
         }
         let clip = self.clip(state);
@@ -50,7 +56,7 @@ impl Hands {
             commands.push(Edit::Clip(clip).into());
         }
         self.shown = clip;
-        commands.extend(self.next_preset(&changes));
+        commands.extend(next_preset(session.preset(), &changes));
         (commands, changes.grabbed)
     }
 
@@ -64,20 +70,6 @@ impl Hands {
         let upright = self.interaction.upright_clip();
         let plane = upright.plane.map(|plane| Plane { normal: plane.normal, offset_m: plane.offset_m });
         Clip { box_lo: upright.box_lo, box_hi: upright.box_hi, plane, ..state.clip }
-    }
-
-    fn next_preset(&mut self, changes: &Changes) -> Option<Command> {
-        let names: Vec<_> = Preset::all().map(Preset::name).collect();
-        let count = names.len() as i64;
-        let steps = i64::from(changes.preset_steps);
-        if steps == 0 || count == 0 {
-            return None;
-        }
-        // From no preset, forwards leads to the first and back to the last.
-        let from = self.preset.map_or(if steps > 0 { -1 } else { 0 }, |preset| preset as i64);
-        let preset = (from + steps).rem_euclid(count) as usize;
-        self.preset = Some(preset);
-        Some(Command::Preset(names[preset].to_owned()))
     }
 
     /// Rays of the hands, and the outline of what they can drag.
@@ -96,6 +88,28 @@ impl Hands {
         }
         lines
     }
+}
+
+/// The preset that the sticks go to from the one of a name.
+fn next_preset(from: Option<&str>, changes: &Changes) -> Option<Command> {
+    let names: Vec<_> = Preset::all().map(Preset::name).collect();
+    let count = names.len() as i64;
+    let steps = i64::from(changes.preset_steps);
+    if steps == 0 || count == 0 {
+        return None;
+    }
+    // From no preset, forwards leads to the first and back to the last.
+    let from = names.iter().position(|name| Some(*name) == from);
+    let from = from.map_or(if steps > 0 { -1 } else { 0 }, |preset| preset as i64);
+    Some(Command::Preset(names[(from + steps).rem_euclid(count) as usize].to_owned()))
+}
+
+/// Whether a window shows anything of a volume whose values fill another.
+fn is_useful(window: Window, full: Window) -> bool {
+    let [width, all] = [window, full].map(|window| window.hi() - window.lo());
+    (all / MOST_NARROWED..=all * MOST_WIDENED).contains(&width)
+        && window.lo() <= full.hi()
+        && window.hi() >= full.lo()
 }
 
 /// Edges of the visible box; those of faces that are picked stand out.
@@ -124,4 +138,34 @@ fn box_lines(
             ColoredLine::new([corner(ends), corner(far)], [alpha; 2], rgb)
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sticks_go_on_from_the_preset_that_is_shown() {
+        let names: Vec<_> = Preset::all().map(Preset::name).collect();
+        let window = Window::new(0.0, 1.0).unwrap();
+        let steps = |from, preset_steps| {
+            let changes =
+                Changes { has_moved: false, has_clipped: false, grabbed: [false; 2], preset_steps, window };
+            next_preset(from, &changes)
+        };
+        let preset = |index: usize| Some(Command::Preset(names[index].to_owned()));
+        assert_eq!(steps(Some(names[2]), 0), None);
+        assert_eq!(steps(Some(names[2]), 1), preset(3));
+        assert_eq!(steps(Some(names[0]), -1), preset(names.len() - 1));
+        assert_eq!([steps(None, 1), steps(None, -1)], [preset(0), preset(names.len() - 1)]);
+        assert_eq!(steps(Some("a file"), 2), preset(1));
+    }
+
+    #[test]
+    fn a_window_that_would_show_nothing_is_not_taken() {
+        let full = Window::new(-1000.0, 3000.0).unwrap();
+        let is = |lo, hi| is_useful(Window::new(lo, hi).unwrap(), full);
+        assert!(is(-1000.0, 3000.0) && is(0.0, 10.0) && is(-20_000.0, 19_000.0) && is(2999.0, 5000.0));
+        assert!(!is(0.0, 3.0) && !is(-30_000.0, 30_000.0) && !is(3001.0, 5000.0) && !is(-3000.0, -1001.0));
+    }
 }

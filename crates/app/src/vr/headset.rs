@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use std::sync::Arc;
+use wheatstone_core::head::Pose;
 use wheatstone_core::headset::{HiddenArea, Side, Tick};
 use wheatstone_render::Gpu;
 
@@ -24,6 +25,9 @@ pub(crate) trait Headset {
 
     /// What lenses hide of the left and the right eye's pictures.
     fn hidden_areas(&self) -> &[HiddenArea; 2];
+
+    /// Whether eyes see the room where pictures are transparent.
+    fn sees_through(&self) -> bool;
 
     /// The floor's height in the world, metres, where it is known.
     fn floor_y_m(&self) -> Option<f64>;
@@ -52,6 +56,9 @@ pub(crate) trait Sight {
     /// What the eyes' pictures are drawn to; all of their pixels are.
     fn eye_images(&mut self) -> Result<[EyeImage; 2], Failure>;
 
+    /// Where the panel is to be; nowhere unless this is called.
+    fn place_panel(&mut self, pose: Pose);
+
     /// What the panel is drawn to when it is drawn anew; none if there is no panel.
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure>;
 }
@@ -70,6 +77,16 @@ pub(crate) enum DepthLayer {
     Without,
     /// If the runtime takes them.
     With,
+}
+
+/// What the eyes' pictures are to be like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct OfPictures {
+    pub(crate) depth_layer: DepthLayer,
+    /// Their width and height, as parts of what the runtime recommends; none for as much as the device has time for.
+    pub(crate) image_scale: Option<f64>,
+    /// Whether they are read after they are drawn.
+    pub(crate) is_read: bool,
 }
 
 /// What a headset was up to.

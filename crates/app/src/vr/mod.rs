@@ -23,7 +23,7 @@ mod room;
 mod stage;
 
 pub(crate) use check::Checking;
-pub(crate) use headset::DepthLayer;
+pub(crate) use headset::{DepthLayer, OfPictures};
 pub(crate) use mirror::Mirror;
 pub(crate) use openxr::{Connected, OpenXr};
 pub(crate) use record::Record;

@@ -1,6 +1,6 @@
 //! Where there is no OpenXR: nothing can be connected to.
 
-use super::headset::{DepthLayer, Headset, Moment, Sight};
+use super::headset::{Headset, Moment, OfPictures, Sight};
 use crate::failure::Failure;
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -31,11 +31,7 @@ impl Connected {
 }
 
 impl OpenXr {
-    pub(crate) fn begin(
-        Connected(nothing): Connected,
-        _: DepthLayer,
-        _: Option<f64>,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn begin(Connected(nothing): Connected, _: OfPictures) -> Result<Self, Failure> {
         match nothing {}
     }
 }
@@ -62,6 +58,10 @@ impl Headset for OpenXr {
     }
 
     fn hidden_areas(&self) -> &[HiddenArea; 2] {
+        match self.0 {}
+    }
+
+    fn sees_through(&self) -> bool {
         match self.0 {}
     }
 

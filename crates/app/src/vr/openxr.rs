@@ -1,13 +1,11 @@
 //! A headset that an OpenXR runtime tells of.
 
-use super::headset::{DepthLayer, EyeImage, Headset, Moment, Sight};
+use super::headset::{DepthLayer, EyeImage, Headset, Moment, OfPictures, Sight};
 use super::panel;
 use crate::failure::Failure;
-use glam::{DQuat, DVec3};
-use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::{Hand, HiddenArea, Side, Tick};
+use wheatstone_core::headset::{HiddenArea, Side, Tick};
 use wheatstone_render::Gpu;
 use wheatstone_xr::{
     EndReason, Floor, Frame, Graphics, Panel, Phase, Runtime, Session, SessionEvent, SessionOptions, XrError,
@@ -52,17 +50,19 @@ impl Connected {
 }
 
 impl OpenXr {
-    /// Begins a session whose pictures are scaled from what the runtime recommends; by as much as the device has time for, if nothing
-    /// is asked for. From then on nothing else may give the device work from another thread.
+    /// Begins a session. From then on nothing else may give the device work from another thread.
     pub(crate) fn begin(
         Connected(graphics): Connected,
-        depth_layer: DepthLayer,
-        image_scale: Option<f64>,
+        OfPictures { depth_layer, image_scale, is_read }: OfPictures,
     ) -> Result<Self, Failure> {
-        let image_scale = image_scale.unwrap_or_else(|| affordable_scale(&graphics));
         let has_depth = depth_layer == DepthLayer::With;
-        let panel_px = Some(panel::SIZE);
-        let options = SessionOptions { image_scale, panel_px, has_depth, ..SessionOptions::default() };
+        let options = SessionOptions {
+            image_scale: image_scale.unwrap_or_else(|| affordable_scale(&graphics)),
+            panel_px: Some(panel::SIZE),
+            has_depth,
+            has_readable_images: is_read,
+            ..SessionOptions::default()
+        };
         let session = Session::begin(&graphics, options)?;
         let runtime = graphics.runtime().description().name.clone();
         let mut told = Vec::new();
@@ -133,6 +133,10 @@ impl Headset for OpenXr {
         &self.hidden
     }
 
+    fn sees_through(&self) -> bool {
+        self.session.sees_through()
+    }
+
     fn floor_y_m(&self) -> Option<f64> {
         match self.session.floor() {
             Floor::Stage | Floor::Local => Some(0.0),
@@ -154,8 +158,9 @@ impl Headset for OpenXr {
             }
             Phase::Running => {
                 let mut frame = self.session.wait()?;
-                draw(&mut Drawn(&mut frame))?;
-                let panel = panel_on(&frame.tick().hands);
+                let mut drawn = Drawn { frame: &mut frame, panel: None };
+                draw(&mut drawn)?;
+                let panel = drawn.panel;
                 frame.end(panel.as_ref())?;
                 Ok(Moment::Shown)
             }
@@ -175,14 +180,6 @@ impl Headset for OpenXr {
     }
 }
 
-/// Above the left hand, tilted towards the eyes; nowhere without that hand.
-fn panel_on(hands: &[Hand; 2]) -> Option<Panel> {
-    let above =
-        Pose { position_m: DVec3::new(0.0, 0.08, -0.06), orientation: DQuat::from_rotation_x(-FRAC_PI_4) };
-    let grip = hands[Side::Left.index()].grip?;
-    Some(Panel { pose: grip.of_own(&above), size_m: panel::SIZE.map(|side| side as f32 * M_PER_PIXEL) })
-}
-
 /// An event in words, if it is worth any.
 fn told(event: &SessionEvent) -> Option<String> {
     match event {
@@ -195,19 +192,26 @@ fn told(event: &SessionEvent) -> Option<String> {
     }
 }
 
-struct Drawn<'a, 's>(&'a mut Frame<'s>);
+struct Drawn<'a, 's> {
+    frame: &'a mut Frame<'s>,
+    panel: Option<Panel>,
+}
 
 impl Sight for Drawn<'_, '_> {
     fn tick(&self) -> &Tick {
-        self.0.tick()
+        self.frame.tick()
     }
 
     fn eye_images(&mut self) -> Result<[EyeImage; 2], Failure> {
-        Ok(self.0.acquire_eyes()?.map(|image| EyeImage { color: image.color, depth: image.depth }))
+        Ok(self.frame.acquire_eyes()?.map(|image| EyeImage { color: image.color, depth: image.depth }))
+    }
+
+    fn place_panel(&mut self, pose: Pose) {
+        self.panel = Some(Panel { pose, size_m: panel::SIZE.map(|side| side as f32 * M_PER_PIXEL) });
     }
 
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {
-        Ok(self.0.acquire_panel()?)
+        Ok(self.frame.acquire_panel()?)
     }
 }
 

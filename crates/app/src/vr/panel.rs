@@ -7,7 +7,11 @@ use crate::viewer::state::Arrangement;
 use crate::viewer::timings::Timings;
 use crate::viewer::ui::dress;
 use egui::{Color32, Context, Pos2, RawInput, Rect, RichText, Sense, Ui, Vec2};
+use glam::{DQuat, DVec3};
+use std::f64::consts::FRAC_PI_4;
 use std::time::{Duration, Instant};
+use wheatstone_core::head::Pose;
+use wheatstone_core::headset::{Hand, Side};
 use wheatstone_render::Gpu;
 
 /// Width and height, pixels.
@@ -33,6 +37,13 @@ pub(crate) struct Told<'a> {
     pub(crate) notes: &'a [String],
     pub(crate) timings: &'a Timings,
     pub(crate) period_ms: f32,
+}
+
+/// Above the left hand, tilted towards the eyes; nowhere without that hand.
+pub(crate) fn place(hands: &[Hand; 2]) -> Option<Pose> {
+    let above =
+        Pose { position_m: DVec3::new(0.0, 0.08, -0.06), orientation: DQuat::from_rotation_x(-FRAC_PI_4) };
+    Some(hands[Side::Left.index()].grip?.of_own(&above))
 }
 
 /// Draws the panel.

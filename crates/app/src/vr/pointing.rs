@@ -7,12 +7,13 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::headset::{Hand, Stand, pointing_settings, value_under};
 use wheatstone_core::reference::Caster;
 use wheatstone_core::scene::Placement;
+use wheatstone_core::view::world_from_patient;
+use wheatstone_core::volume::Grid;
 
 /// A volume whose values can be pointed at.
 pub(crate) struct Pointing {
     caster: Caster,
-    /// In upright space.
-    placement: Placement,
+    grid: Grid,
     shown: Option<Shown>,
 }
 
@@ -25,9 +26,9 @@ struct Shown {
 }
 
 impl Pointing {
-    /// At voxels that are placed somewhere in upright space.
-    pub(crate) fn new(caster: Caster, placement: Placement) -> Self {
-        Self { caster, placement, shown: None }
+    /// At voxels of a grid.
+    pub(crate) fn new(caster: Caster, grid: Grid) -> Self {
+        Self { caster, grid, shown: None }
     }
 
     /// The values of what is shown of the volume under the hands' pointers, in the file's unit, while it stands somewhere.
@@ -40,13 +41,13 @@ impl Pointing {
         if hands.iter().all(|hand| hand.aim.is_none()) {
             return Ok([None; 2]);
         }
-        let Self { caster, placement, shown } = self;
+        let Self { caster, grid, shown } = self;
         let is_same = |shown: &Shown| {
             (&shown.look, &shown.transfer, &shown.clip) == (&state.look, &state.transfer, &state.clip)
         };
         let shown = match shown.take().filter(is_same) {
             Some(same) => shown.insert(same),
-            None => shown.insert(Shown::of(state, placement)?),
+            None => shown.insert(Shown::of(state, grid)?),
         };
         Ok(hands.each_ref().map(|hand| {
             let aim = upright_pose(&hand.aim?, stand);
@@ -56,13 +57,14 @@ impl Pointing {
 }
 
 impl Shown {
-    fn of(state: &State, placement: &Placement) -> Result<Self, Failure> {
+    fn of(state: &State, grid: &Grid) -> Result<Self, Failure> {
+        let placement = Placement::of_grid(grid, world_from_patient(grid, state.look.up.direction()));
         let settings = pointing_settings(state.settings().map_err(Failure::input)?);
         Ok(Self {
             look: state.look,
             transfer: state.transfer.clone(),
             clip: state.clip,
-            parameters: CastParameters::new(&settings, placement),
+            parameters: CastParameters::new(&settings, &placement),
         })
     }
 }

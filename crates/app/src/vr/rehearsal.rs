@@ -118,7 +118,7 @@ impl Room {
             in_front: &line,
         };
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.stage.draw(&gpu, &mut encoder, &target, &eyes[0], [0.0; 3], &scenery);
+        self.stage.draw(&gpu, &mut encoder, &target, &eyes[0], Some([0.0; 3]), &scenery);
         gpu.queue().submit([encoder.finish()]);
         let panel = image(panel::SIZE, headset.image_format())?;
         self.draw_panel(&panel, PERIOD_S, WarpName::None)?;

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::viewer::canvas;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use wheatstone_core::head::Display;
+use wheatstone_core::head::{Display, Pose};
 use wheatstone_core::headset::{Demonstration, Eye, HiddenArea, Recording, Side, Tick};
 use wheatstone_render::Gpu;
 
@@ -109,6 +109,10 @@ impl Headset for Replay {
         &self.hidden
     }
 
+    fn sees_through(&self) -> bool {
+        false
+    }
+
     fn floor_y_m(&self) -> Option<f64> {
         Some(0.0)
     }
@@ -160,11 +164,13 @@ pub(crate) struct Guided<H> {
     played: Played,
     /// Display time of the first refresh, seconds.
     first_s: Option<f64>,
+    /// Whether people know.
+    is_told: bool,
 }
 
 impl<H> Guided<H> {
     pub(crate) fn new(headset: H, played: Played) -> Self {
-        Self { headset, played, first_s: None }
+        Self { headset, played, first_s: None, is_told: false }
     }
 }
 
@@ -193,6 +199,10 @@ impl<H: Headset> Headset for Guided<H> {
         self.headset.hidden_areas()
     }
 
+    fn sees_through(&self) -> bool {
+        self.headset.sees_through()
+    }
+
     fn floor_y_m(&self) -> Option<f64> {
         self.headset.floor_y_m()
     }
@@ -201,7 +211,7 @@ impl<H: Headset> Headset for Guided<H> {
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
     ) -> Result<Moment, Failure> {
-        let Self { headset, played, first_s } = self;
+        let Self { headset, played, first_s, .. } = self;
         let mut is_over = false;
         let moment = headset.refresh(&mut |sight| {
             let own = *sight.tick();
@@ -222,7 +232,10 @@ impl<H: Headset> Headset for Guided<H> {
     }
 
     fn told(&mut self) -> Vec<String> {
-        self.headset.told()
+        let warning =
+            "the head and the hands are recorded ones: whoever wears the headset sees a room that moves";
+        let first = (!std::mem::replace(&mut self.is_told, true)).then(|| warning.to_owned());
+        first.into_iter().chain(self.headset.told()).collect()
     }
 
     fn close(&mut self) -> Result<(), Failure> {
@@ -253,6 +266,10 @@ impl Sight for Guide<'_> {
         self.sight.eye_images()
     }
 
+    fn place_panel(&mut self, pose: Pose) {
+        self.sight.place_panel(pose);
+    }
+
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {
         self.sight.panel_image()
     }
@@ -271,6 +288,8 @@ impl Sight for Drawn<'_> {
     fn eye_images(&mut self) -> Result<[EyeImage; 2], Failure> {
         Ok(self.eyes.clone())
     }
+
+    fn place_panel(&mut self, _: Pose) {}
 
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {
         Ok(None)

@@ -50,9 +50,9 @@ impl Report {
         Some([at(0.5), at(0.99), at(1.0)])
     }
 
-    /// Mean and worst DSSIM of the refreshes that were checked, by whether the eyes moved.
-    fn dssim(&self, moves: bool) -> Option<[f64; 2]> {
-        let of: Vec<f64> = self.checked.iter().filter(|c| c.moves == moves).map(|c| c.dssim).collect();
+    /// Mean and worst of a figure of the refreshes that were checked, by whether the eyes moved.
+    fn of_checked(&self, moves: bool, figure: impl Fn(&Checked) -> f64) -> Option<[f64; 2]> {
+        let of: Vec<f64> = self.checked.iter().filter(|c| c.moves == moves).map(figure).collect();
         let worst = of.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         (!of.is_empty()).then(|| [of.iter().sum::<f64>() / of.len() as f64, worst])
     }
@@ -60,7 +60,9 @@ impl Report {
     /// One row.
     pub(crate) fn to_json(&self) -> Value {
         let [median, p99, most] = self.draw_ms().map_or([None; 3], |ms| ms.map(Some));
-        let [moving, still] = [true, false].map(|moves| self.dssim(moves));
+        let [moving, still] = [true, false].map(|moves| self.of_checked(moves, |checked| checked.dssim));
+        let [covered_moving, covered_still] =
+            [true, false].map(|moves| self.of_checked(moves, |checked| checked.dssim_covered));
         json!({
             "headset": self.headset,
             "depth_layer": self.has_depth_layer,
@@ -80,11 +82,16 @@ impl Report {
             "dssim_moving_worst": moving.map(|of| of[1]),
             "dssim_still_mean": still.map(|of| of[0]),
             "dssim_still_worst": still.map(|of| of[1]),
+            "dssim_covered_moving_mean": covered_moving.map(|of| of[0]),
+            "dssim_covered_moving_worst": covered_moving.map(|of| of[1]),
+            "dssim_covered_still_mean": covered_still.map(|of| of[0]),
+            "dssim_covered_still_worst": covered_still.map(|of| of[1]),
             "checked": self.checked.iter().map(|checked| json!({
                 "refresh": checked.refresh,
                 "eye": name(checked.side),
                 "moves": checked.moves,
                 "dssim": checked.dssim,
+                "dssim_covered": checked.dssim_covered,
             })).collect::<Vec<_>>(),
             "eye_method": self.eye_method,
             "canted": self.is_canted,
@@ -120,8 +127,13 @@ impl Report {
             ));
         }
         for (moves, what) in [(true, "moving"), (false, "still")] {
-            if let Some([mean, worst]) = self.dssim(moves) {
-                lines.push(format!("DSSIM from direct renders, {what}: mean {mean:.5}, worst {worst:.5}"));
+            let whole = self.of_checked(moves, |checked| checked.dssim);
+            let covered = self.of_checked(moves, |checked| checked.dssim_covered);
+            if let (Some([mean, worst]), Some([mean_covered, worst_covered])) = (whole, covered) {
+                lines.push(format!(
+                    "DSSIM from direct renders, {what}: mean {mean:.5}, worst {worst:.5}; where the volume is: mean \
+                     {mean_covered:.5}, worst {worst_covered:.5}"
+                ));
             }
         }
         lines.join("\n")

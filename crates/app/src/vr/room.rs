@@ -6,7 +6,7 @@ use super::eyes::{cast_views, see_alike, upright_views};
 use super::hands::Hands;
 use super::headset::{EyeImage, Headset, Moment, Sight};
 use super::ladder::Ladder;
-use super::panel::{Panel, Told};
+use super::panel::{self, Panel, Told};
 use super::pointing::Pointing;
 use super::report::Report;
 use super::stage::{ColoredLine, Scenery, Stage};
@@ -25,8 +25,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use wheatstone_core::head::Pose;
 use wheatstone_core::headset::{Eye, Interaction, Scale, Side, Stand, Tick, floor, horizon};
-use wheatstone_core::scene::Placement;
-use wheatstone_core::view::{View, world_from_patient};
+use wheatstone_core::view::View;
 use wheatstone_render::Gpu;
 
 /// How long a headset that wants no pictures is left alone.
@@ -153,6 +152,8 @@ pub(crate) struct Room {
     pub(super) pictures: Option<[wgpu::TextureView; 2]>,
     timings: Timings,
     floor_y_m: Option<f64>,
+    /// Whether the room is seen behind the volume.
+    sees_through: bool,
     report: Report,
 }
 
@@ -178,7 +179,7 @@ impl Room {
             hands: None,
             pointing: None,
             ladder: Ladder::default(),
-            checks: checks.map(|checking| Checks::new(&gpu, checking)).transpose()?,
+            checks: checks.map(Checks::new).transpose()?,
             scale,
             stand,
             has_floor,
@@ -189,6 +190,7 @@ impl Room {
             pictures: None,
             timings: Timings::default(),
             floor_y_m: headset.floor_y_m(),
+            sees_through: headset.sees_through(),
             report,
             gpu,
         };
@@ -279,7 +281,8 @@ impl Room {
     fn cast(&mut self) -> Result<(), Failure> {
         let Some(until) = self.cast_until else { return Ok(()) };
         let left = until.saturating_duration_since(Instant::now());
-        self.casting.refresh(&self.gpu, time_to_cast(left, self.report.period_s))
+        let cast = self.casting.refresh(&self.gpu, time_to_cast(left, self.report.period_s));
+        self.session.notes.survive(cast).map(drop)
     }
 
     /// Draws a refresh; which hands have taken hold of something.
@@ -317,6 +320,9 @@ impl Room {
         };
         let images = sight.eye_images()?;
         let submission = self.draw_eyes(&images, depths.as_ref(), &eyes, &tick, wanted.as_ref())?;
+        if let Some(pose) = panel::place(&tick.hands) {
+            sight.place_panel(pose);
+        }
         if self.panel.is_due()
             && let Some(image) = sight.panel_image()?
         {
@@ -361,26 +367,27 @@ impl Room {
         showing: Showing,
         views: Vec<View>,
     ) -> Result<(), Failure> {
-        let (grid, up) = (arrived.facts.grid.clone(), showing.state.look.up.direction());
-        let placement = Placement::of_grid(&grid, world_from_patient(&grid, up));
+        let grid = arrived.facts.grid.clone();
         let held = arrived.held.take();
         self.casting.receive(&self.gpu, *arrived, &showing.state, views.clone())?;
         self.aimed = views;
-        self.pointing = held.map(|caster| Pointing::new(caster, placement));
+        self.pointing = held.map(|caster| Pointing::new(caster, grid));
         self.report.volume = showing.name().to_owned();
         self.session.show(showing);
         Ok(())
     }
 
-    /// Lets hands take the volume where it stands: where it is to, or before the eyes. Until the head is tracked nobody knows where that
-    /// is.
+    /// Lets hands take the volume where it stands, with what is to be up: where it is or is to, or before the eyes. Until the head is
+    /// tracked nobody knows where that is.
     fn stand_up(&mut self, tick: &Tick) -> Result<(), Failure> {
-        let (None, Some(eyes), Some(facts)) = (&self.hands, tick.between_eyes(), self.session.facts()) else {
-            return Ok(());
-        };
+        let (Some(eyes), Some(facts)) = (tick.between_eyes(), self.session.facts()) else { return Ok(()) };
         let state = self.session.state();
         let up = state.look.up.direction();
-        let stand = self.stand.unwrap_or_else(|| Stand::before(&eyes, &facts.grid, up, self.scale));
+        if self.hands.as_ref().is_some_and(|hands| hands.interaction.up() == up) {
+            return Ok(());
+        }
+        let stands = self.hands.as_ref().map(|hands| *hands.stand()).or(self.stand);
+        let stand = stands.unwrap_or_else(|| Stand::before(&eyes, &facts.grid, up, self.scale));
         let clip = state.settings().map_err(Failure::input)?.clip;
         self.hands = Some(Hands::new(Interaction::new(&facts.grid, up, stand, &clip), state));
         Ok(())
@@ -388,7 +395,7 @@ impl Room {
 
     fn follow_hands(&mut self, tick: &Tick) -> [bool; 2] {
         let Some(hands) = &mut self.hands else { return [false; 2] };
-        let (commands, grabbed) = hands.update(tick, self.session.state());
+        let (commands, grabbed) = hands.update(tick, &self.session);
         commands.iter().for_each(|command| self.session.perform(command));
         grabbed
     }
@@ -396,8 +403,8 @@ impl Room {
     /// Looks up what the hands point at.
     fn point(&mut self, tick: &Tick) -> Result<(), Failure> {
         if let (Some(pointing), Some(hands)) = (&mut self.pointing, &self.hands) {
-            self.report.values_under_hands =
-                pointing.values_under(&tick.hands, hands.stand(), self.session.state())?;
+            let values = pointing.values_under(&tick.hands, hands.stand(), self.session.state());
+            self.report.values_under_hands = self.session.notes.survive(values)?.unwrap_or_default();
         }
         Ok(())
     }
@@ -412,7 +419,8 @@ impl Room {
         if !is_same {
             self.aimed = views;
         }
-        self.casting.follow(&self.gpu, self.session.state(), self.aimed.clone())
+        let followed = self.casting.follow(&self.gpu, self.session.state(), self.aimed.clone());
+        self.session.notes.survive(followed).map(drop)
     }
 
     /// What is to be cast for the eyes; that it is not by the method that is asked for is told once.
@@ -450,7 +458,7 @@ impl Room {
             self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let behind = if self.has_floor { surroundings(tick, self.floor_y_m) } else { Vec::new() };
         let in_front = self.hands.as_ref().map_or_else(Vec::new, |hands| hands.lines(tick));
-        let background = self.session.state().look.background;
+        let background = (!self.sees_through).then_some(self.session.state().look.background);
         let [left, right] = &mut self.lenses;
         let visible = [(left, 0), (right, 1)].map(|(lens, eye): (&mut Lens, usize)| {
             let size = images[eye].color.texture().size();
@@ -466,18 +474,24 @@ impl Room {
                 Scenery { behind: &behind, picture, depths, visible: &visible, in_front: &in_front };
             self.stage.draw(&self.gpu, &mut encoder, image, &eyes[eye], background, &scenery);
         }
-        if let (Some(checks), Some(pictures), Some(wanted), Some(front)) =
+        if let (Some(checks), Some(_), Some(wanted), Some(front)) =
             (&mut self.checks, &self.pictures, wanted, self.casting.front())
+            && checks.is_due()
         {
             let cast_from: Vec<View> = front.pictures().map(|(_, view)| view).collect();
-            let seen = [0, 1].map(|eye: usize| Seen {
-                eye: &eyes[eye],
-                wanted: wanted[eye],
-                cast_from: cast_from[eye.min(cast_from.len() - 1)],
-                picture: &pictures[eye],
-                visible: visible[eye],
-            });
-            checks.keep(&self.gpu, &mut encoder, self.session.state(), seen)?;
+            for side in Side::BOTH {
+                let eye = side.index();
+                let seen = Seen {
+                    eye: eyes[eye],
+                    wanted: wanted[eye],
+                    cast_from: cast_from[eye.min(cast_from.len() - 1)],
+                    visible: visible[eye].to_vec(),
+                    background,
+                    behind: behind.clone(),
+                    in_front: in_front.clone(),
+                };
+                checks.keep(&self.gpu, &mut encoder, self.session.state(), side, &images[eye], seen)?;
+            }
         }
         Ok(self.gpu.queue().submit([encoder.finish()]))
     }
@@ -490,7 +504,8 @@ impl Room {
     ) -> Result<(), Failure> {
         let state = self.session.state();
         let [lo, hi] = state.transfer.window;
-        let look = format!("{}, window {lo:.4} to {hi:.4}", state.look.mode.name());
+        let transfer = self.session.preset().map_or_else(String::new, |preset| format!(", {preset}"));
+        let look = format!("{}{transfer}, window {lo:.4} to {hi:.4}", state.look.mode.name());
         let late = self.report.late.total();
         let refreshes =
             format!("{}, warp {}, {} dropped", self.timings.described(), warp.name(), late.dropped);
@@ -540,6 +555,63 @@ fn surroundings(tick: &Tick, floor_y_m: Option<f64>) -> Vec<ColoredLine> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::Source;
+    use crate::viewer::loading::Destination;
+    use crate::vr::Played;
+    use crate::vr::{Clock, DepthLayer, Replay};
+    use wheatstone_core::head::Display;
+    use wheatstone_core::headset::Demonstration;
+    use wheatstone_render::GpuError;
+
+    /// Pulls the device out after some refreshes.
+    struct Unplugging(u32);
+
+    impl Beside for Unplugging {
+        fn refreshed(&mut self, room: &mut Room) -> Result<(), Failure> {
+            self.0 = self.0.saturating_sub(1);
+            if self.0 == 0 {
+                room.gpu.device().destroy();
+            }
+            Ok(())
+        }
+
+        fn has_quit(&self) -> bool {
+            false
+        }
+    }
+
+    #[test]
+    fn a_device_that_is_lost_ends_the_session_and_is_told() {
+        if std::env::var("WHEATSTONE_SKIP_GPU_TESTS").is_ok_and(|value| value == "1") {
+            return;
+        }
+        let gpu = Gpu::open_software().or_else(|_| Gpu::open_best());
+        let gpu =
+            Arc::new(gpu.unwrap_or_else(|error| panic!("{error}; WHEATSTONE_SKIP_GPU_TESTS=1 skips this")));
+        let source = Source { file: None, layout: None };
+        let mut session = Session::begin(source, Arc::new(|| ()), Destination::Headset).unwrap();
+        let arrived = load(&mut session, &gpu).unwrap();
+        let up = arrived.1.state.look.up.direction();
+        let demonstration = Demonstration::new(&arrived.0.facts.grid, up);
+        let played = Played::Demonstration(Box::new(demonstration));
+        let size = [32, 32];
+        let display = Display::default();
+        let mut headset =
+            Replay::new(gpu, played, display, Clock::Patient, size, DepthLayer::Without).unwrap();
+        let opening = Opening {
+            session,
+            arrived,
+            commands: Vec::new(),
+            control: Control::Hands,
+            scale: Scale::Human,
+            stand: None,
+            has_floor: true,
+            checks: None,
+            refreshes: None,
+        };
+        let lost = run(&mut headset, opening, &mut Unplugging(5));
+        assert!(matches!(lost, Err(Failure::Gpu(GpuError::Lost { .. }))), "{lost:?}");
+    }
 
     #[test]
     fn casting_goes_on_where_drawing_takes_a_whole_refresh() {

@@ -180,14 +180,14 @@ impl Stage {
         }
     }
 
-    /// Encodes all pixels of an eye's image.
+    /// Encodes all pixels of an eye's image; without a background it is transparent.
     pub(crate) fn draw(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         EyeImage { color: image, depth }: &EyeImage,
         eye: &Eye,
-        background: [f32; 3],
+        background: Option<[f32; 3]>,
         scenery: &Scenery<'_>,
     ) {
         let device = gpu.device();
@@ -225,17 +225,17 @@ impl Stage {
         });
         let lines = [scenery.behind, scenery.in_front]
             .map(|lines| buffer(bytemuck::cast_slice(lines), wgpu::BufferUsages::VERTEX));
-        let [r, g, b] = background.map(f64::from);
+        let clear = background.map_or(wgpu::Color::TRANSPARENT, |rgb| {
+            let [r, g, b] = rgb.map(f64::from);
+            wgpu::Color { r, g, b, a: 1.0 }
+        });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("stage"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: image,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
-                    store: wgpu::StoreOp::Store,
-                },
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
             })],
             depth_stencil_attachment: depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
                 view,
@@ -329,14 +329,16 @@ mod tests {
         test(&gpu.unwrap_or_else(|error| panic!("{error}; WHEATSTONE_SKIP_GPU_TESTS=1 skips this")));
     }
 
-    /// What an eye sees of some scenery before a blue background.
-    fn seen(gpu: &Gpu, size: [u32; 2], scenery: &Scenery<'_>) -> Vec<[u8; 4]> {
+    const BLUE: Option<[f32; 3]> = Some([0.0, 0.0, 1.0]);
+
+    /// What an eye sees of some scenery before a background.
+    fn seen(gpu: &Gpu, size: [u32; 2], background: Option<[f32; 3]>, scenery: &Scenery<'_>) -> Vec<[u8; 4]> {
         let stage = Stage::new(gpu.device(), wgpu::TextureFormat::Rgba8Unorm, None);
         let image = canvas::texture(gpu, size, wgpu::TextureFormat::Rgba8Unorm).unwrap();
         let color = image.create_view(&wgpu::TextureViewDescriptor::default());
         let target = EyeImage { color, depth: None };
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        stage.draw(gpu, &mut encoder, &target, &EYE, [0.0, 0.0, 1.0], scenery);
+        stage.draw(gpu, &mut encoder, &target, &EYE, background, scenery);
         gpu.queue().submit([encoder.finish()]);
         gpu.read_texture(&image).unwrap()
     }
@@ -365,7 +367,7 @@ mod tests {
             )];
             let scenery =
                 Scenery { picture: Some(&picture), visible: &visible, in_front: &line, ..Scenery::default() };
-            let texels = seen(gpu, size, &scenery);
+            let texels = seen(gpu, size, BLUE, &scenery);
             let mut drawn = 0;
             for (index, texel) in texels.iter().enumerate() {
                 let [x, y] = [index as u32 % size[0], index as u32 / size[0]];
@@ -381,6 +383,24 @@ mod tests {
             }
             assert!(drawn < 64 * 48 * 3 / 4, "{drawn}");
             assert!(texels.contains(&[0, 255, 0, 255]), "lines are drawn wherever they are");
+        });
+    }
+
+    #[test]
+    fn without_a_background_the_room_is_seen_where_nothing_is() {
+        on_device(|gpu| {
+            let size = [16, 8];
+            // Half of what is behind passes.
+            let texels = [128, 0, 0, 128].repeat((size[0] * size[1]) as usize);
+            let picture = filled(gpu, size, wgpu::TextureFormat::Rgba8Unorm, &texels);
+            let left = [PixelRect { columns: 0..8, rows: 0..8 }];
+            let scenery = Scenery { picture: Some(&picture), visible: &left, ..Scenery::default() };
+            for (background, on_left, on_right) in
+                [(None, [128, 0, 0, 128], [0; 4]), (BLUE, [128, 0, 127, 255], [0, 0, 255, 255])]
+            {
+                let texels = seen(gpu, size, background, &scenery);
+                assert_eq!([texels[0], texels[15]], [on_left, on_right], "{background:?}");
+            }
         });
     }
 
@@ -448,7 +468,7 @@ mod tests {
             };
             let stage = Stage::new(gpu.device(), color.format(), Some(depth.format()));
             let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            stage.draw(gpu, &mut encoder, &target, &EYE, [0.0; 3], &scenery);
+            stage.draw(gpu, &mut encoder, &target, &EYE, Some([0.0; 3]), &scenery);
             gpu.queue().submit([encoder.finish()]);
             let found: Vec<f32> = gpu.read_texture(&depth).unwrap();
             let depth_at = |x: usize, y: usize| near_m / found[y * size[0] as usize + x];

@@ -114,9 +114,12 @@ impl Eyes {
         Self { name: "canted", pair, ..Self::different() }
     }
 
-    /// Those in the headset from now on.
+    /// Those in the headset from now on, with no hands, of which rays would be seen.
     fn put(&self, place: &Place) {
-        place.contact().remote().eyes(&self.pair).head(&self.head).send();
+        let off = Controller { active: false, ..Controller::at(self.head) };
+        let mut remote = place.contact().remote();
+        let remote = remote.eyes(&self.pair).head(&self.head);
+        remote.controller(Side::Left, &off).controller(Side::Right, &off).send();
     }
 
     fn in_the_room(&self) -> [Eye; 2] {

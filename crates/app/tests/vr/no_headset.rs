@@ -4,14 +4,14 @@ use crate::support::{distance, folder, recorded, stand_of, wheatstone};
 use glam::{DQuat, DVec3};
 use serde_json::Value;
 use wheatstone_core::head::Display;
-use wheatstone_core::headset::{Demonstration, Recording};
+use wheatstone_core::headset::{Demonstration, Recording, Scale, Stand};
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::transfer::Preset;
 use wheatstone_core::view::AnatomicalDirection;
 use wheatstone_core::volume::Grid;
 
 /// All keys of a row of `bench vr --json`.
-const KEYS: [&str; 27] = [
+const KEYS: [&str; 31] = [
     "canted",
     "checked",
     "depth_layer",
@@ -20,6 +20,10 @@ const KEYS: [&str; 27] = [
     "draw_ms_p99",
     "draw_ms_worst",
     "dropped",
+    "dssim_covered_moving_mean",
+    "dssim_covered_moving_worst",
+    "dssim_covered_still_mean",
+    "dssim_covered_still_worst",
     "dssim_moving_mean",
     "dssim_moving_worst",
     "dssim_still_mean",
@@ -147,6 +151,9 @@ fn a_report_has_what_is_documented() {
     for (index, check) in checked.iter().enumerate() {
         let eye = ["left", "right"][index % 2];
         assert_eq!(check["eye"], eye);
+        // What is black all around is alike.
+        let [whole, covered] = ["dssim", "dssim_covered"].map(|figure| check[figure].as_f64().unwrap());
+        assert!(covered >= whole && whole >= 0.0, "{check}");
         let name = format!("shown/refresh_{:05}_{eye}.png", check["refresh"].as_u64().unwrap());
         assert_eq!(image::image_dimensions(folder.path().join(name)).unwrap(), (32, 32));
     }
@@ -192,6 +199,45 @@ fn canted_displays_get_two_casts_and_that_is_told_once() {
     // Two casts that are asked for are nothing to tell of.
     let run = wheatstone(folder.path(), &[&vr[..], &ends].concat());
     assert!(!run.stderr.contains(told), "{}", run.stderr);
+}
+
+#[test]
+fn eyes_that_walk_into_the_volume_see_it_from_inside() {
+    let folder = folder();
+    let sphere = Phantom::Sphere.cube(24).unwrap();
+    let demonstration = Demonstration::new(sphere.grid(), AnatomicalDirection::Superior);
+    let mut ticks = demonstration.recording(Display::new(25.0).unwrap()).unwrap().ticks().to_vec();
+    ticks.truncate(120);
+    let begin = ticks[0];
+    let to_middle_m = {
+        let head = begin.between_eyes().unwrap();
+        let stand = Stand::before(&head, sphere.grid(), AnatomicalDirection::Superior, Scale::Human);
+        stand.pose.position_m - head.position_m
+    };
+    for (index, tick) in ticks.iter_mut().enumerate() {
+        // As far as into the volume, but not to its middle.
+        let way = 0.85 * (index as f64 / 60.0).min(1.0);
+        let eyes = begin.eyes.unwrap().map(|mut eye| {
+            eye.pose.position_m += way * to_middle_m;
+            eye
+        });
+        (tick.eyes, tick.hands) = (Some(eyes), Default::default());
+    }
+    let file = std::fs::File::create(folder.path().join("inside.jsonl")).unwrap();
+    Recording::new(ticks).unwrap().write(file).unwrap();
+
+    let phantom = ["phantom", "shepp-logan", "--size", "24", "-o", "head.nrrd"];
+    assert_eq!(wheatstone(folder.path(), &phantom).code, 0);
+    let bench = ["bench", "vr", "head.nrrd", "--replay", "inside.jsonl", "--size", "64x64", "--patient"];
+    let flags = ["--refresh-hz", "25", "--json", "--check-every", "4", "--checks", "50"];
+    let pictures = ["--check-pictures", "shown"];
+    let report = wheatstone(folder.path(), &[&bench[..], &flags, &pictures].concat()).json();
+    let checked = report["rows"][0]["checked"].as_array().unwrap();
+    let last = &checked[checked.len() - 1];
+    assert_eq!((&last["refresh"], &last["moves"]), (&120.into(), &false.into()), "{checked:?}");
+    assert!(last["dssim_covered"].as_f64().unwrap() <= 0.003, "{last}");
+    let corner = image::open(folder.path().join("shown/refresh_00120_left.png")).unwrap().into_luma8();
+    assert!(corner.get_pixel(1, 1).0[0] > 40, "the volume does not fill the eye's picture");
 }
 
 #[test]
@@ -257,7 +303,7 @@ fn a_recording_without_eyes_ends_when_it_is_told_to() {
     let header = r#"{"wheatstone_recording":1,"units":"s, m, tangents, unit quaternions as x, y, z, w","period_s":0.02,"frusta":[{"left":-1.0,"right":1.0,"down":-1.0,"up":1.0,"near_m":0.01},{"left":-1.0,"right":1.0,"down":-1.0,"up":1.0,"near_m":0.01}]}"#;
     let hand = r#"{"squeeze":0.0,"trigger":0.0,"stick":[0.0,0.0],"menu":false}"#;
     let tick = |time_s: f64| format!(r#"{{"time_s":{time_s},"hands":[{hand},{hand}]}}"#);
-    std::fs::write(folder.path().join("blind.jsonl"), format!("{header}\n{}\n{}\n", tick(0.0), tick(1e6)))
+    std::fs::write(folder.path().join("blind.jsonl"), format!("{header}\n{}\n{}\n", tick(0.0), tick(8e4)))
         .unwrap();
     let vr = ["vr", "sphere.nrrd", "--headset", "none", "--patient", "--replay", "blind.jsonl", "--json"];
     let report = wheatstone(folder.path(), &[&vr[..], &["--refreshes", "40"]].concat()).json();

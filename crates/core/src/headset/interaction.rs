@@ -1,5 +1,6 @@
 //! Hands at a volume.
 
+use super::button::Button;
 use super::crop::{Crop, Picked};
 use super::drag::Drags;
 use super::grasp::Grasp;
@@ -21,6 +22,7 @@ use glam::DAffine3;
 /// | pinch of a bare hand | near a face of the visible box or the clip plane it drags that, else it squeezes |
 /// | stick left, right | preset before, next preset |
 /// | stick up, down | shifts the window; with the trigger pulled it widens or narrows the window |
+/// | menu button | brings the volume back before the eyes, as large as it is |
 ///
 /// A hand that holds the volume drags nothing. The clip plane goes along with the volume. Nothing else moves the volume: not the
 /// head, not a lost tracking, not letting go.
@@ -65,6 +67,7 @@ pub struct Interaction {
     grasp: Grasp,
     drags: Drags,
     sticks: Sticks,
+    menus: [Button; 2],
 }
 
 /// What a tick has changed.
@@ -95,12 +98,16 @@ impl Interaction {
             grasp: Grasp::default(),
             drags: Drags::default(),
             sticks: Sticks::default(),
+            menus: Default::default(),
         }
     }
 
     /// What the hands do next, while values are normalised by a window.
     pub fn update(&mut self, tick: &Tick, window: Window) -> Changes {
         let (stand_before, clip_before) = (self.stand, self.clip());
+        if let (true, Some(eyes)) = (self.is_called_back(tick), tick.between_eyes()) {
+            self.put(Stand::as_long_before(&eyes, &self.grid, self.up, self.stand.longest_side_m));
+        }
         let hands = self.pinches.update(&tick.hands, &self.crop, &self.stand, self.upright_from_texture);
         let (stand, grabbed) = self.grasp.update(self.stand, &hands);
         self.stand = stand;
@@ -119,6 +126,17 @@ impl Interaction {
             preset_steps: wish.steps,
             window: window.shifted_and_stretched(wish.shift, wish.stretch).unwrap_or(window),
         }
+    }
+
+    /// Whether a menu button has gone down.
+    fn is_called_back(&mut self, tick: &Tick) -> bool {
+        let pressed = [0, 1].map(|side: usize| self.menus[side].press(f32::from(tick.hands[side].menu)));
+        pressed.contains(&true)
+    }
+
+    /// The direction of the patient that is up.
+    pub fn up(&self) -> AnatomicalDirection {
+        self.up
     }
 
     /// Where the volume stands.

@@ -63,7 +63,11 @@ impl Stand {
     /// uncomfortably near, 15° below the eyes, the patient facing them. Only the heading of the eyes counts: the volume is
     /// upright however the head is tilted.
     pub fn before(eyes: &Pose, grid: &Grid, up: AnatomicalDirection, scale: Scale) -> Self {
-        let longest_side_m = scale.longest_side_m(grid);
+        Self::as_long_before(eyes, grid, up, scale.longest_side_m(grid))
+    }
+
+    /// The same for a volume whose longest side is of some metres.
+    pub fn as_long_before(eyes: &Pose, grid: &Grid, up: AnatomicalDirection, longest_side_m: f64) -> Self {
         let upright_from_texture = world_from_patient(grid, up) * grid.patient_from_texture();
         let front = corners(upright_from_texture).map(|corner| corner.z).fold(0.0, f64::max);
         let distance_m = ARMS_LENGTH_M.max(NEAREST_M + front * longest_side_m);

@@ -195,6 +195,7 @@ fn bad_lines_are_refused_by_number() {
     expect(changed(1, "\"s, m, ", "\"ms, mm, "), &["line 1", "ms, mm", "must be"]);
     expect(changed(1, "period_s", "perod_s"), &["line 1", "perod_s"]);
     expect(changed(3, "\"time_s\":0.1", "\"time_s\":0.0"), &["line 3", "order of time"]);
+    expect(changed(3, "\"time_s\":0.1", "\"time_s\":1e9"), &["line 3", "at most 86400 s apart"]);
     expect(changed(3, "\"time_s\":0.1", "\"time_s\":1e999"), &["line 3", "column"]);
     expect(changed(3, "\"time_s\":0.1", "\"time_s\":1e99"), &["line 3", "time_s", "must be from"]);
     expect(changed(4, "\"squeeze\":0.0", "\"squeeze\":1.5"), &["line 4", "squeeze is 1.5"]);

@@ -4,9 +4,10 @@ use crate::hands::*;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use wheatstone_core::head::Pose;
-use wheatstone_core::headset::{Hand, Interaction, Scale, Stand};
+use wheatstone_core::headset::{Eye, Hand, Interaction, Scale, Stand, Tick};
 use wheatstone_core::scene::Clip;
 use wheatstone_core::view::AnatomicalDirection::{self, Anterior, Superior};
+use wheatstone_core::view::Frustum;
 use wheatstone_core::volume::Grid;
 
 fn world_from_patient_direction(
@@ -92,6 +93,33 @@ fn a_head_that_moves_moves_nothing() {
         assert!(!changes.has_moved && !changes.has_clipped && changes.window == window());
     }
     assert_eq!((*interaction.stand(), interaction.clip()), before);
+}
+
+#[test]
+fn a_menu_button_brings_the_volume_back_once_and_as_large_as_it_is() {
+    let mut interaction = interaction();
+    let eyes = Pose {
+        position_m: DVec3::new(2.0, 1.7, 1.0),
+        orientation: DQuat::from_rotation_y(1.1) * DQuat::from_rotation_x(-0.4),
+    };
+    let frustum = Frustum { left: -1.0, right: 1.0, down: -1.0, up: 1.0, near_m: 0.01, far_m: f64::INFINITY };
+    let pressed = Hand { menu: true, ..Hand::default() };
+    let tick = |index: u32, hands| Tick {
+        display_time_s: f64::from(index) * PERIOD_S,
+        period_s: PERIOD_S,
+        eyes: Some([Eye { pose: eyes, frustum }; 2]),
+        hands,
+    };
+    let back = Stand::as_long_before(&eyes, &grid(), Superior, stand().longest_side_m);
+    assert!(!interaction.update(&tick(0, [Hand::default(); 2]), window()).has_moved);
+    assert!(interaction.update(&tick(1, [Hand::default(), pressed]), window()).has_moved);
+    assert_eq!(interaction.stand(), &back);
+    let ahead = eyes.orientation.inverse() * (back.pose.position_m - eyes.position_m);
+    assert!(ahead.z < -0.3 && ahead.x.abs() < 1e-9, "{ahead}");
+    // It stays there however the head moves on with the button down, until the button goes down again.
+    assert!(!interaction.update(&tick(2, [Hand::default(), pressed]), window()).has_moved);
+    let blind = Tick { eyes: None, ..tick(3, [pressed, Hand::default()]) };
+    assert!(!interaction.update(&blind, window()).has_moved, "nobody knows where the head is");
 }
 
 #[test]

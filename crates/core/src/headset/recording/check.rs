@@ -35,6 +35,16 @@ pub enum TickError {
         /// Of the tick before, seconds.
         last_s: f64,
     },
+    /// A tick that is too long after the one before.
+    #[error("tick at {time_s} s after one at {last_s} s: ticks must be at most {most_s} s apart")]
+    Gap {
+        /// Of the tick, seconds.
+        time_s: f64,
+        /// Of the tick before, seconds.
+        last_s: f64,
+        /// Longest that is allowed, seconds.
+        most_s: f64,
+    },
     /// More than a recording holds.
     #[error("a recording has at most {most} ticks")]
     TooMany {
@@ -46,6 +56,9 @@ pub enum TickError {
 /// Latest time, seconds: a century.
 const LATEST_S: f64 = 3.2e9;
 
+/// Longest time without a tick, seconds: a day, for which a headset may lie on a table.
+const LONGEST_GAP_S: f64 = 86_400.0;
+
 /// Periods of displays, seconds.
 const PERIODS_S: [f64; 2] = [1e-4, 10.0];
 
@@ -54,6 +67,9 @@ pub(super) fn checked(tick: Tick, last: Option<&Tick>) -> Result<Tick, TickError
     let time_s = within("time_s", tick.display_time_s, [-LATEST_S, LATEST_S])?;
     if let Some(last) = last.filter(|last| last.display_time_s >= time_s) {
         return Err(TickError::Order { time_s, last_s: last.display_time_s });
+    }
+    if let Some(last) = last.filter(|last| time_s - last.display_time_s > LONGEST_GAP_S) {
+        return Err(TickError::Gap { time_s, last_s: last.display_time_s, most_s: LONGEST_GAP_S });
     }
     within("period_s", tick.period_s, PERIODS_S)?;
     let eyes = match tick.eyes {
