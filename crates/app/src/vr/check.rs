@@ -43,6 +43,8 @@ pub(crate) struct Checked {
     pub(crate) dssim_covered: f64,
     /// Whether what was shown was cast from elsewhere.
     pub(crate) moves: bool,
+    /// Pixels along a side of the picture that was warped, as a part of full resolution.
+    pub(crate) resolution: f64,
 }
 
 /// Images that eyes were shown at some refreshes, kept on the device until the session is over.
@@ -68,6 +70,8 @@ pub(crate) struct Seen {
     pub(crate) wanted: View,
     /// From which the front picture was cast.
     pub(crate) cast_from: View,
+    /// Pixels along a side of the front picture, as a part of full resolution.
+    pub(crate) resolution: f64,
     /// The pixels that can be seen.
     pub(crate) visible: Vec<PixelRect>,
     pub(crate) background: Option<[f32; 3]>,
@@ -133,7 +137,8 @@ impl Checks {
             }
             let map = SsimMap::new(&shown, &should).map_err(Failure::input)?;
             let covered = map.mean_where(&covered(&truth, &seen.visible)).map_err(Failure::input)?;
-            Ok(Checked { refresh, side, dssim: dssim(map.mean()), dssim_covered: dssim(covered), moves })
+            let (dssim, dssim_covered) = (dssim(map.mean()), dssim(covered));
+            Ok(Checked { refresh, side, dssim, dssim_covered, moves, resolution: seen.resolution })
         };
         self.kept.into_iter().map(compare_one).collect()
     }

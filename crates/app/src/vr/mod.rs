@@ -9,6 +9,7 @@ mod depths;
 mod eyes;
 mod hands;
 mod headset;
+mod keeping;
 mod ladder;
 mod mirror;
 #[cfg_attr(not(any(target_os = "linux", target_os = "windows")), path = "no_openxr.rs")]

@@ -84,6 +84,10 @@ impl Room {
                 state.apply(&edit).map_err(Failure::input)?;
             }
             self.casting.rehearse(&self.gpu, &state, view)?;
+            if state.pace.warp == WarpName::Volumetric {
+                state.pace.warp = WarpName::Grid;
+                self.casting.rehearse(&self.gpu, &state, view)?;
+            }
         }
         Ok(self.gpu.wait()?)
     }

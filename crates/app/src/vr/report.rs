@@ -92,6 +92,7 @@ impl Report {
                 "moves": checked.moves,
                 "dssim": checked.dssim,
                 "dssim_covered": checked.dssim_covered,
+                "resolution": checked.resolution,
             })).collect::<Vec<_>>(),
             "eye_method": self.eye_method,
             "canted": self.is_canted,

@@ -5,6 +5,7 @@ use super::depths::Depths;
 use super::eyes::{cast_views, see_alike, upright_views};
 use super::hands::Hands;
 use super::headset::{EyeImage, Headset, Moment, Sight};
+use super::keeping::Keeping;
 use super::ladder::Ladder;
 use super::panel::{self, Panel, Told};
 use super::pointing::Pointing;
@@ -139,6 +140,7 @@ pub(crate) struct Room {
     hands: Option<Hands>,
     pointing: Option<Pointing>,
     ladder: Ladder,
+    keeping: Keeping,
     checks: Option<Checks>,
     pub(super) scale: Scale,
     /// Where the volume is to stand when hands can take it; none before the eyes.
@@ -179,6 +181,7 @@ impl Room {
             hands: None,
             pointing: None,
             ladder: Ladder::default(),
+            keeping: Keeping::default(),
             checks: checks.map(Checks::new).transpose()?,
             scale,
             stand,
@@ -304,7 +307,11 @@ impl Room {
         if let Some(stand) = &stand {
             self.aim(&eyes, stand, sizes)?;
         }
-        let warp = self.ladder.choose(self.session.state().pace.warp, tick.period_s);
+        if let Some(front) = self.casting.front() {
+            self.keeping.note(self.casting.pictures(), front.quality(), front.prepared().keeps_layers());
+        }
+        let asked = self.keeping.choose(self.session.state().pace.warp);
+        let warp = self.ladder.choose(asked, tick.period_s);
         let layering = self.session.state().pace.layers.layering().map_err(Failure::input)?;
         self.eyes.step_by(layering.settings);
         self.pictures = match (self.casting.front(), &wanted) {
@@ -419,7 +426,9 @@ impl Room {
         if !is_same {
             self.aimed = views;
         }
-        let followed = self.casting.follow(&self.gpu, self.session.state(), self.aimed.clone());
+        let mut state = self.session.state().clone();
+        state.pace.warp = self.keeping.choose(state.pace.warp);
+        let followed = self.casting.follow(&self.gpu, &state, self.aimed.clone());
         self.session.notes.survive(followed).map(drop)
     }
 
@@ -485,6 +494,7 @@ impl Room {
                     eye: eyes[eye],
                     wanted: wanted[eye],
                     cast_from: cast_from[eye.min(cast_from.len() - 1)],
+                    resolution: front.quality().resolution(),
                     visible: visible[eye].to_vec(),
                     background,
                     behind: behind.clone(),
