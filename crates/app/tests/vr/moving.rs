@@ -30,7 +30,7 @@ fn swaying(time_s: f64) -> Pose {
 /// Moves the head until the session has been told of some refreshes, then leaves it elsewhere.
 fn sway(remote: &mut Remote, vr: &mut Started) {
     let begun = Instant::now();
-    while vr.runs() && vr.ticks().len() < MOVING {
+    while vr.runs() && vr.told() < MOVING {
         for _ in 0..20 {
             remote.head(&swaying(begun.elapsed().as_secs_f64())).send();
             std::thread::sleep(SEND_EVERY);

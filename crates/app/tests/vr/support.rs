@@ -122,11 +122,20 @@ pub(crate) struct Started {
 }
 
 impl Started {
+    /// The recording as far as it is written.
+    fn record(&self) -> Vec<u8> {
+        let mut files = std::fs::read_dir(self.records.as_ref().unwrap()).unwrap();
+        files.next().map_or_else(Vec::new, |file| std::fs::read(file.unwrap().path()).unwrap_or_default())
+    }
+
+    /// How many refreshes it has been told of so far, but for what it has not written yet.
+    pub(crate) fn told(&self) -> usize {
+        self.record().iter().filter(|byte| **byte == b'\n').count().saturating_sub(1)
+    }
+
     /// What it has been told so far, but for what it has not written yet.
     pub(crate) fn ticks(&self) -> Vec<Tick> {
-        let files = std::fs::read_dir(self.records.as_ref().unwrap()).unwrap();
-        let text = files.map(|file| std::fs::read(file.unwrap().path()).unwrap_or_default()).next();
-        let text = text.unwrap_or_default();
+        let text = self.record();
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         Recording::read(&text[..whole]).map_or_else(|_| Vec::new(), |recording| recording.ticks().to_vec())
     }
