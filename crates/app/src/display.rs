@@ -46,6 +46,15 @@ pub(crate) struct DisplayArgs {
     screen_height: Option<f64>,
 }
 
+/// The flag that names a display of projectors.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Display")]
+pub(crate) struct ArrayArgs {
+    /// agus-2008 (96 projectors of 320x240) or a description.
+    #[arg(long, value_name = "NAME|FILE.json", default_value = OF_PAPER)]
+    display: String,
+}
+
 /// A display of either kind.
 #[derive(Debug, Clone)]
 pub(crate) enum Display {
@@ -67,7 +76,7 @@ const ASPECT_TOLERANCE: f64 = 0.02;
 impl DisplayArgs {
     /// The display. Behind lenses whose calibration is known, the view cone is theirs.
     pub(crate) fn resolve(&self, lenses: Option<&Lenticular>) -> Result<Display, Failure> {
-        match self.named()? {
+        match named(&self.display)? {
             Display::Lenses(display) => self.changed(display, lenses).map(Display::Lenses),
             Display::Projectors(_) if self.changes_something() || lenses.is_some() => {
                 Err(Failure::input(format!(
@@ -77,20 +86,6 @@ impl DisplayArgs {
             }
             projectors @ Display::Projectors(_) => Ok(projectors),
         }
-    }
-
-    fn named(&self) -> Result<Display, Failure> {
-        if self.display == OF_PAPER {
-            return Ok(Display::Projectors(ProjectorArray::of_paper()));
-        }
-        let path = Path::new(&self.display);
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-            return read_text_file(path, MOST_BYTES, "a description of a display", from_json);
-        }
-        let model = self.display.parse::<Model>().map_err(|error| {
-            Failure::input(format!("--display: {error}, {OF_PAPER}; descriptions end in .json"))
-        })?;
-        Ok(Display::Lenses(model.display()))
     }
 
     fn changes_something(&self) -> bool {
@@ -122,6 +117,34 @@ impl DisplayArgs {
         }
         Ok(display)
     }
+}
+
+impl ArrayArgs {
+    /// The display.
+    pub(crate) fn resolve(&self) -> Result<ProjectorArray, Failure> {
+        match named(&self.display)? {
+            Display::Projectors(array) => Ok(array),
+            Display::Lenses(_) => Err(Failure::input(format!(
+                "{} is behind lenses: a display of projectors is needed, {OF_PAPER} or a description",
+                self.display
+            ))),
+        }
+    }
+}
+
+/// A known display, or that of a file.
+pub(crate) fn named(name: &str) -> Result<Display, Failure> {
+    if name == OF_PAPER {
+        return Ok(Display::Projectors(ProjectorArray::of_paper()));
+    }
+    let path = Path::new(name);
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+        return read_text_file(path, MOST_BYTES, "a description of a display", from_json);
+    }
+    let model = name.parse::<Model>().map_err(|error| {
+        Failure::input(format!("--display: {error}, {OF_PAPER}; descriptions end in .json"))
+    })?;
+    Ok(Display::Lenses(model.display()))
 }
 
 /// Either kind of description.

@@ -6,7 +6,7 @@ use crate::transfer_spec::{self, Resolved, TransferSpec};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use wheatstone_core::scene::{Clip, ClipPlane, GradientMethod, Mode, Settings, Shading};
+use wheatstone_core::scene::{BoundaryEnhancement, Clip, ClipPlane, GradientMethod, Mode, Settings, Shading};
 use wheatstone_core::volume::{StorageKind, Volume, Window};
 
 /// Flags of the picture's content.
@@ -34,6 +34,10 @@ pub(crate) struct LookArgs {
     /// none, phong, shadow, ambient or directional:D; for dvr and iso [default: none for dvr, phong for iso].
     #[arg(long, value_name = "SHADING", value_parser = spec::shading)]
     pub(crate) shading: Option<Shading>,
+
+    /// How much denser samples are where values change, |g| being the change per voxel length: by INSIDE + GAIN |g|^E (dvr).
+    #[arg(long, value_name = "INSIDE,GAIN,E", value_parser = spec::boundaries)]
+    pub(crate) boundaries: Option<BoundaryEnhancement>,
 
     /// Samples per voxel length.
     #[arg(long, value_name = "F", default_value = "1", value_parser = spec::within(0.01..=32.0), allow_negative_numbers = true)]
@@ -183,6 +187,9 @@ impl LookArgs {
                 mode.name()
             )));
         }
+        if self.boundaries.is_some() && mode != ModeName::Dvr {
+            return Err(Failure::input(format!("--boundaries needs --mode dvr, not --mode {}", mode.name())));
+        }
         Ok(())
     }
 
@@ -223,6 +230,7 @@ impl LookArgs {
             preintegrated: self.preintegrated,
             shading: self.shading.unwrap_or(default_shading),
             surface_rgb,
+            boundaries: self.boundaries,
             gradient: match self.gradient {
                 GradientName::Central => GradientMethod::CentralDifferences,
                 GradientName::Tetrahedron => GradientMethod::Tetrahedron,

@@ -22,6 +22,7 @@ mod quilt_file;
 mod shipped;
 mod skipping;
 mod spec;
+mod stand;
 mod text_file;
 mod transfer_spec;
 mod viewer;
@@ -52,7 +53,9 @@ enum Command {
     Info(commands::info::InfoArgs),
     Render(Box<commands::render::RenderArgs>),
     Quilt(Box<commands::quilt::QuiltArgs>),
+    Projectors(Box<commands::projectors::ProjectorsArgs>),
     Simulate(commands::simulate::SimulateArgs),
+    Calibrate(commands::calibrate::CalibrateArgs),
     Compare(commands::compare::CompareArgs),
     Phantom(commands::phantom::PhantomArgs),
     Doctor(commands::doctor::DoctorArgs),
@@ -67,7 +70,9 @@ fn main() -> ExitCode {
         Command::Info(args) => commands::info::run(&args),
         Command::Render(args) => commands::render::run(&args),
         Command::Quilt(args) => commands::quilt::run(&args),
+        Command::Projectors(args) => commands::projectors::run(&args),
         Command::Simulate(args) => commands::simulate::run(&args),
+        Command::Calibrate(args) => commands::calibrate::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
         Command::Phantom(args) => commands::phantom::run(&args),
         Command::Doctor(args) => commands::doctor::run(&args),

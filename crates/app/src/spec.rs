@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 use wheatstone_core::cast::DIRECTIONAL_STEPS;
 use wheatstone_core::lit_sphere::Style;
-use wheatstone_core::scene::{ClipPlane, MAX_DIRECTIONS, Shading};
+use wheatstone_core::scene::{BoundaryEnhancement, ClipPlane, MAX_DIRECTIONS, Shading};
 use wheatstone_core::skip::BlockSize;
 use wheatstone_core::volume::VoxelType;
 
@@ -152,6 +152,31 @@ fn styles(text: &str) -> Result<Shading, String> {
             Err(format!("must be style:LOW:HIGH of {}", all.join(", ")))
         }
     }
+}
+
+/// Largest factor and gain of boundaries, and their largest exponent.
+const MOST_BOUNDARIES: [f64; 3] = [1000.0, 1e6, 16.0];
+
+/// `INSIDE,GAIN,EXPONENT`.
+pub(crate) fn boundaries(text: &str) -> Result<BoundaryEnhancement, String> {
+    let [most_inside, most_gain, most_exponent] = MOST_BOUNDARIES;
+    numbers(text)
+        .filter(|&[inside, gain, exponent]: &[f64; 3]| {
+            (0.0..=most_inside).contains(&inside)
+                && (0.0..=most_gain).contains(&gain)
+                && (1.0..=most_exponent).contains(&exponent)
+                && exponent.fract() == 0.0
+        })
+        .map(|[inside, gain, exponent]| BoundaryEnhancement {
+            inside: inside as f32,
+            gain: gain as f32,
+            exponent: exponent as u32,
+        })
+        .ok_or_else(|| {
+            format!(
+                "must be INSIDE,GAIN,EXPONENT: from 0 to {most_inside}, from 0 to {most_gain}, a whole number from 1 to {most_exponent}"
+            )
+        })
 }
 
 /// Directional shading by its samples, four for each direction; 0 is none.
@@ -337,6 +362,11 @@ mod tests {
         assert_eq!(shading_of_samples("16"), Ok(Shading::Directional { directions: 4 }));
         assert!(shading_of_samples("6").is_err() && shading_of_samples("260").is_err());
         assert!(shading("directional:65").is_err() && shading("gouraud").is_err());
+        let enhanced = boundaries("0.2,40,2").unwrap();
+        assert_eq!((enhanced.inside, enhanced.gain, enhanced.exponent), (0.2, 40.0, 2));
+        for bad in ["", "1,1", "-1,1,1", "1,1,0", "1,1,1.5", "1,nan,1", "1,1,17"] {
+            assert!(boundaries(bad).is_err(), "{bad}");
+        }
         assert!(shading("style:").is_err() && shading("style:clay:wool").is_err());
         assert_eq!(color("#ff0000"), Ok([1.0, 0.0, 0.0]));
         assert!(color("ff00").is_err() && color("+f0000").is_err());

@@ -11,7 +11,7 @@ use crate::skipping::Skipping;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::detail::LevelOfDetail;
+use wheatstone_core::detail::{LevelOfDetail, Slab};
 use wheatstone_core::gradient_map::GradientDepth;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{GradientMethod, Mode};
@@ -55,11 +55,11 @@ struct Scene {
 /// What is far away.
 struct Detail {
     level_of_detail: LevelOfDetail,
-    coarser: Vec<CoarserLevel>,
+    levels: Vec<Level>,
 }
 
-/// Settings for a coarser level: as the nearest slab, and behind nearer ones.
-struct CoarserLevel {
+/// Settings for a level: as the nearest slab, and behind nearer ones.
+struct Level {
     alone: Arc<Prepared>,
     behind: Prepared,
 }
@@ -134,14 +134,17 @@ impl GpuEngine {
         skipping: &Skipping,
         level_of_detail: LevelOfDetail,
     ) -> Result<Shot, GpuError> {
-        let mut coarser = Vec::new();
-        for level in 1..self.levels.len() {
-            let alone = self.scene(level, &parameters.of_level(level), skipping)?.prepared;
-            let behind = self.renderer.behind(&self.gpu, &alone)?;
-            coarser.push(CoarserLevel { alone, behind });
-        }
+        let mut levels = Vec::new();
         let scene = self.scene(0, parameters, skipping)?;
-        self.scenes.push(Scene { detail: Some(Detail { level_of_detail, coarser }), ..scene });
+        for level in 0..self.levels.len() {
+            let alone = match level {
+                0 => Arc::clone(&scene.prepared),
+                _ => self.scene(level, &parameters.of_level(level), skipping)?.prepared,
+            };
+            let behind = self.renderer.behind(&self.gpu, &alone)?;
+            levels.push(Level { alone, behind });
+        }
+        self.scenes.push(Scene { detail: Some(Detail { level_of_detail, levels }), ..scene });
         Ok(Shot(self.scenes.len() - 1))
     }
 
@@ -268,7 +271,7 @@ impl GpuEngine {
             None => self.renderer.render(&self.gpu, &scene.prepared, views, targets)?,
             Some(detail) => {
                 for (view, target) in views.iter().zip(targets) {
-                    for (part, prepared) in detail.parts(&scene.prepared, view) {
+                    for (part, prepared) in detail.parts(view) {
                         let target = std::slice::from_mut(target);
                         self.renderer.render(&self.gpu, prepared, &[part], target)?;
                     }
@@ -375,17 +378,13 @@ impl GpuEngine {
 
 impl Detail {
     /// The parts of a view from near to far, and what each is cast with.
-    fn parts<'a>(&'a self, nearest: &'a Prepared, view: &View) -> Vec<(View, &'a Prepared)> {
-        let slabs = self.level_of_detail.slabs(view, nearest.parameters(), 1 + self.coarser.len());
-        let first = slabs[0].level;
-        let prepared = |level: usize| -> &'a Prepared {
-            match level.checked_sub(1).map(|coarser| &self.coarser[coarser]) {
-                None => nearest,
-                Some(coarser) if level == first => &coarser.alone,
-                Some(coarser) => &coarser.behind,
-            }
+    fn parts(&self, view: &View) -> Vec<(View, &Prepared)> {
+        let slabs = self.level_of_detail.slabs(view, self.levels[0].alone.parameters(), self.levels.len());
+        let prepared = |(nearer, slab): (usize, &Slab)| {
+            let Level { alone, behind } = &self.levels[slab.level];
+            (slab.part_of(view), if nearer == 0 { &**alone } else { behind })
         };
-        slabs.iter().map(|slab| (slab.part_of(view), prepared(slab.level))).collect()
+        slabs.iter().enumerate().map(prepared).collect()
     }
 }
 

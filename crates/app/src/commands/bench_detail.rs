@@ -162,7 +162,7 @@ impl DetailArgs {
         let mut engine = Engine::open(self.backend, &job, &volume, StorageKind::lossless_for(&volume))?;
         engine.add_levels(&coarser)?;
         let to_first = CastParameters { termination_alpha: FIRST_ALPHA, ..parameters.clone() };
-        let detail = LevelOfDetail { pixels: self.pixels };
+        let detail = LevelOfDetail::Pixels(self.pixels);
         let shots = ways()
             .map(|way| match way.what {
                 What::Full => engine.prepare(&parameters, &way.skipping()),

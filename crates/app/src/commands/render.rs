@@ -207,7 +207,7 @@ impl RenderArgs {
         let bar = Bar::new("frames", u64::from(frames));
         let shot = match self.level_of_detail {
             None => engine.prepare(parameters, skipping)?,
-            Some(pixels) => engine.prepare_detail(parameters, skipping, LevelOfDetail { pixels })?,
+            Some(pixels) => engine.prepare_detail(parameters, skipping, LevelOfDetail::Pixels(pixels))?,
         };
         let views = self.camera.views(0.0)?;
         let mut made = Made {

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod pictures;
+mod projectors;
 mod quilts;
 mod refusals;
 mod reports;

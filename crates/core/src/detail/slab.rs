@@ -2,15 +2,18 @@
 
 use super::Footprint;
 use crate::cast::CastParameters;
+use crate::lightfield::Resolution;
 use crate::view::View;
 use std::ops::Range;
 
-/// How coarse what is far away may be cast.
+/// How coarse parts of a view may be cast.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LevelOfDetail {
+pub enum LevelOfDetail {
     /// Pixels that a voxel covers, and a step at one sample per voxel: between √½ and √2 times as many where there are
     /// levels for it.
-    pub pixels: f64,
+    Pixels(f64),
+    /// As fine as a light-field display resolves at each depth from its screen (LF Eq. 5), for the views of its projectors.
+    Resolved(Resolution),
 }
 
 /// A part of a view's depths that is cast of one level.
@@ -26,25 +29,32 @@ impl LevelOfDetail {
     /// The slabs of a view, from near to far, of a volume of so many levels; at least one, and together all depths.
     pub fn slabs(&self, view: &View, parameters: &CastParameters, level_count: usize) -> Vec<Slab> {
         let (near_m, far_m) = view.depths_m(&parameters.visible_corners_world());
-        self.slabs_of(&Footprint::of(view), parameters.voxel_length_m(), near_m..far_m, level_count)
+        let view_per_world = view.view_from_world.matrix3.determinant().abs().cbrt();
+        let (voxel_length_m, depths_m) = (parameters.voxel_length_m() * view_per_world, near_m..far_m);
+        match self {
+            Self::Pixels(pixels) => Footprint::of(view).slabs(*pixels, voxel_length_m, depths_m, level_count),
+            Self::Resolved(resolution) => resolution.slabs(voxel_length_m, &depths_m, level_count),
+        }
     }
+}
 
-    /// The same for any footprint, of a volume between two depths.
-    pub fn slabs_of(
+impl Footprint {
+    /// Slabs in which a voxel is about so many times as wide as the footprint, of a volume between two depths, metres.
+    pub fn slabs(
         &self,
-        footprint: &Footprint,
+        pixels: f64,
         voxel_length_m: f64,
         depths_m: Range<f64>,
         level_count: usize,
     ) -> Vec<Slab> {
         let coarsest = level_count.saturating_sub(1);
         let level_at = |depth_m: f64| {
-            let voxels = self.pixels * footprint.width_m(depth_m).max(0.0) / voxel_length_m;
+            let voxels = pixels * self.width_m(depth_m).max(0.0) / voxel_length_m;
             (voxels.log2().round() as usize).min(coarsest)
         };
         let first_depth_m = |level: usize| {
-            let width_m = voxel_length_m * (level as f64 - 0.5).exp2() / self.pixels;
-            footprint.depth_m(width_m)
+            let width_m = voxel_length_m * (level as f64 - 0.5).exp2() / pixels;
+            self.depth_m(width_m)
         };
         let (nearest, furthest) = (level_at(depths_m.start), level_at(depths_m.end));
         let slab = |level: usize| {
@@ -71,8 +81,7 @@ mod tests {
 
     #[test]
     fn a_voxel_is_about_a_pixel_wide() {
-        let detail = LevelOfDetail { pixels: 1.0 };
-        let slabs = detail.slabs_of(&PER_METRE, 0.004, 1.0..40.0, 9);
+        let slabs = PER_METRE.slabs(1.0, 0.004, 1.0..40.0, 9);
         let levels: Vec<usize> = slabs.iter().map(|slab| slab.level).collect();
         assert_eq!(levels, [0, 1, 2, 3]);
         for pair in slabs.windows(2) {
@@ -86,16 +95,12 @@ mod tests {
 
     #[test]
     fn levels_end_and_pixels_of_one_width_have_one() {
-        let detail = LevelOfDetail { pixels: 2.0 };
         let all = f64::NEG_INFINITY..f64::INFINITY;
-        assert_eq!(
-            detail.slabs_of(&PER_METRE, 0.004, 30.0..40.0, 2),
-            [Slab { level: 1, depths_m: all.clone() }]
-        );
+        assert_eq!(PER_METRE.slabs(2.0, 0.004, 30.0..40.0, 2), [Slab { level: 1, depths_m: all.clone() }]);
         let parallel = Footprint { at_eye_m: 0.004, per_metre: 0.0 };
-        assert_eq!(detail.slabs_of(&parallel, 0.002, -3.0..40.0, 9), [Slab { level: 2, depths_m: all }]);
+        assert_eq!(parallel.slabs(2.0, 0.002, -3.0..40.0, 9), [Slab { level: 2, depths_m: all }]);
         // From behind a light-field display's screen.
         let spread = Footprint { at_eye_m: 0.001, per_metre: 0.01 };
-        assert_eq!(detail.slabs_of(&spread, 0.001, -3.0..0.05, 9).len(), 3);
+        assert_eq!(spread.slabs(2.0, 0.001, -3.0..0.05, 9).len(), 3);
     }
 }

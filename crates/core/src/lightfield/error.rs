@@ -122,6 +122,11 @@ pub(super) fn check(
     Err(DisplayError::Number { field: field.into(), value, expected })
 }
 
+/// The version of a form.
+pub(super) fn check_version(found: u64, expected: u64) -> Result<(), DisplayError> {
+    if found == expected { Ok(()) } else { Err(DisplayError::Version { found, expected }) }
+}
+
 /// A length that is above zero and of a size that displays have.
 pub(super) fn check_length_m(field: impl Into<String>, value: f64) -> Result<(), DisplayError> {
     check(value > 0.0 && value <= LONGEST_M, field, value, "above 0 and at most 1000 m")

@@ -7,6 +7,7 @@
 
 pub mod calibration;
 mod error;
+mod fit;
 pub mod lenticular;
 pub mod observer;
 pub mod projectors;
@@ -18,4 +19,4 @@ pub use error::DisplayError;
 pub use lenticular::Lenticular;
 pub use projectors::ProjectorArray;
 pub use quilt::QuiltDisplay;
-pub use resolution::{RESOLVED_LEVEL, Resolution};
+pub use resolution::{RESOLVED_PIXELS, Resolution};

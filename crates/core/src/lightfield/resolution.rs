@@ -1,6 +1,6 @@
 //! What a display with beams of finite width resolves at which distance from its screen.
 
-use crate::detail::{Footprint, LevelOfDetail, Slab};
+use crate::detail::{Footprint, Slab};
 use std::ops::Range;
 
 /// The smallest thing that a display reproduces at a distance from its screen: s(z) = s₀ + 2 |z| tan(Φ/2) (LF Eq. 3).
@@ -12,8 +12,8 @@ pub struct Resolution {
     pub beam_angle_rad: f64,
 }
 
-/// The coarsest level whose voxels are not longer than s(z) (LF Eq. 5).
-pub const RESOLVED_LEVEL: LevelOfDetail = LevelOfDetail { pixels: std::f64::consts::FRAC_1_SQRT_2 };
+/// Voxels over s(z): the coarsest level whose voxels are not longer (LF Eq. 5).
+pub const RESOLVED_PIXELS: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Resolution {
     /// The size at a distance from the screen, before or behind it, metres.
@@ -36,9 +36,8 @@ impl Resolution {
     /// display could show. The volume is between two depths, metres; together the slabs are all depths.
     pub fn slabs(&self, voxel_length_m: f64, depths_m: &Range<f64>, level_count: usize) -> Vec<Slab> {
         let footprint = Footprint { at_eye_m: self.pixel_size_m, per_metre: self.per_metre() };
-        let away_to = |far_m: f64| {
-            RESOLVED_LEVEL.slabs_of(&footprint, voxel_length_m, 0.0..far_m.max(0.0), level_count)
-        };
+        let away_to =
+            |far_m: f64| footprint.slabs(RESOLVED_PIXELS, voxel_length_m, 0.0..far_m.max(0.0), level_count);
         let (mut before, behind) = (away_to(-depths_m.start), away_to(depths_m.end));
         before.reverse();
         let reflected =

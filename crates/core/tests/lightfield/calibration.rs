@@ -5,7 +5,10 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::ProjectorArray;
-use wheatstone_core::lightfield::calibration::{ColorTable, Correspondence, Fit, GeometryWarp};
+use wheatstone_core::lightfield::calibration::{
+    ColorTable, Correction, CorrectionError, Corrections, Correspondence, Fit, GeometryWarp, MeasuredBeam,
+    MeasuredProjector, Measurements,
+};
 use wheatstone_core::lightfield::projectors::{ImageRect, Projector};
 
 const SIZE: [u32; 2] = [320, 240];
@@ -168,4 +171,85 @@ fn tables_are_checked_and_applied() {
     assert_eq!(table.corrected([-1.0, 3.0, 1.0]), [0.0, 1.0, 0.0]);
     let text = serde_json::to_string(&table).unwrap();
     assert_eq!(serde_json::from_str::<ColorTable>(&text).unwrap().checked().unwrap(), table);
+}
+
+/// What the beams of some projectors of a display pass.
+fn measurements_of(display: &ProjectorArray, indices: &[usize]) -> Measurements {
+    let projector = |&index: &usize| {
+        let projector = &display.projectors()[index];
+        let beam =
+            |c: Correspondence| MeasuredBeam { pixel: c.pixel.to_array(), place_m: c.place_m.to_array() };
+        let correspondences = measured(projector, 0.0).into_iter().map(beam).collect();
+        MeasuredProjector { id: projector.id, correspondences }
+    };
+    Measurements { wheatstone_measurements: 1, projectors: indices.iter().map(projector).collect() }
+}
+
+#[test]
+fn a_display_is_fitted_projector_by_projector_and_the_others_stay() {
+    let designed = display(8, 2.0, SIZE);
+    let mut description = designed.description().clone();
+    description.projectors[0].emitter_m[0] += 0.004;
+    description.projectors[5].image.left_m -= 0.002;
+    let built = ProjectorArray::new(description).unwrap();
+    let text = serde_json::to_string(&measurements_of(&built, &[5, 0])).unwrap();
+    let calibrated = Measurements::from_json(&text).unwrap().fit(&designed).unwrap();
+    assert_eq!(calibrated.fits.iter().map(|fit| fit.projector.id).collect::<Vec<_>>(), [5, 0]);
+    assert!(calibrated.fits.iter().all(|fit| fit.worst_m < 1e-8));
+    for (fitted, built) in calibrated.array.projectors().iter().zip(built.projectors()) {
+        assert!(most(fitted, built) < 1e-7, "{fitted:?} {built:?}");
+    }
+    assert_eq!(calibrated.array.projectors()[3], designed.projectors()[3]);
+}
+
+#[test]
+fn measurements_and_corrections_that_are_none_give_one_clear_error() {
+    let display = display(8, 2.0, SIZE);
+    let fault = |measurements: &Measurements| measurements.fit(&display).unwrap_err().to_string();
+    let all = measurements_of(&display, &[1, 2]);
+    let with = |change: &dyn Fn(&mut Measurements)| {
+        let mut changed = all.clone();
+        change(&mut changed);
+        changed
+    };
+    assert_eq!(
+        fault(&with(&|m| m.projectors[1].id = 77)),
+        "projectors[1].id is 77: the display has no projector of that id"
+    );
+    assert!(fault(&with(&|m| m.projectors[1].id = 1)).contains("ids must differ"));
+    let few = fault(&with(&|m| m.projectors[0].correspondences.truncate(2)));
+    assert_eq!(few, "projector 1: 2 correspondences: at least 4 are needed");
+    let of_text = |text: &str| Measurements::from_json(text).unwrap_err().to_string();
+    assert!(of_text(r#"{"wheatstone_measurements": 2, "projectors": []}"#).contains("version 2"));
+    assert!(of_text(r#"{"projectors": []}"#).contains("wheatstone_measurements"));
+
+    let corrections = |text: &str| Corrections::from_json(text, &display).unwrap_err().to_string();
+    let of_projectors = |list: &str| format!(r#"{{"wheatstone_corrections": 1, "projectors": [{list}]}}"#);
+    assert!(corrections(&of_projectors(r#"{"id": 9}"#)).contains("no projector of that id"));
+    assert!(corrections(&of_projectors(r#"{"id": 1}, {"id": 1}"#)).contains("ids must differ"));
+    let warp = r#"{"id": 1, "warp": {"columns": 1, "rows": 2, "positions_px": [[0, 0], [1, 1]]}}"#;
+    assert!(corrections(&of_projectors(warp)).starts_with("projectors[0].warp: a warp of 1x2 nodes"));
+    let table = r#"{"id": 1, "colors": {"red": [0, 2], "green": [0, 1], "blue": [0, 1]}}"#;
+    assert!(corrections(&of_projectors(table)).starts_with("projectors[0].colors: entry 1 of the red table"));
+    assert!(corrections(&of_projectors(r#"{"id": 1, "colours": 3}"#)).contains("colours"));
+}
+
+#[test]
+fn corrections_are_each_projectors_own() -> Result<(), CorrectionError> {
+    let display = display(8, 2.0, [40, 30]);
+    let inverted = ColorTable::new([vec![1.0, 0.0], vec![1.0, 0.0], vec![1.0, 0.0]]).unwrap();
+    let shifted = GeometryWarp::from_fn(2, 2, [40, 30], |p| p + DVec2::X);
+    let corrections = Corrections {
+        wheatstone_corrections: 1,
+        projectors: vec![Correction { id: 3, warp: Some(shifted), colors: Some(inverted) }],
+    };
+    let read = Corrections::from_json(&serde_json::to_string(&corrections).unwrap(), &display)?;
+    let ideal = smooth();
+    assert_eq!(read.apply(2, ideal.clone()), ideal);
+    let corrected = read.apply(3, ideal.clone());
+    for (x, y) in [(0, 0), (20, 13), (38, 29)] {
+        let (sent, wanted) = (corrected.rgb[y * 40 + x], ideal.rgb[y * 40 + x + 1]);
+        assert!((0..3).all(|c| (sent[c] - (1.0 - wanted[c])).abs() < 1e-5), "{x} {y}");
+    }
+    Ok(())
 }

@@ -3,8 +3,8 @@
 use glam::{DAffine3, DVec3};
 use proptest::prelude::*;
 use wheatstone_core::image::RgbImage;
-use wheatstone_core::lightfield::QuiltDisplay;
 use wheatstone_core::lightfield::quilt::{Model, QuiltName, Sampling};
+use wheatstone_core::lightfield::{ProjectorArray, QuiltDisplay};
 
 fn sampling() -> impl Strategy<Value = Sampling> {
     prop::sample::select(vec![Sampling::Middles, Sampling::Ends])
@@ -179,6 +179,30 @@ proptest! {
             };
             points.iter().map(seen).fold(0.0, f64::max)
         };
+        prop_assert!((outermost(scale) - 1.0).abs() < 1e-9, "{}", outermost(scale));
+    }
+
+    #[test]
+    fn a_viewer_who_is_not_in_the_middle_sees_as_much_as_fits(
+        seed in prop::collection::vec((-1.0_f64..1.0, -1.0_f64..1.0, -1.0_f64..1.0), 1..8),
+        before_m in -0.1_f64..0.1,
+        height_m in -0.4_f64..0.4,
+    ) {
+        let mut description = ProjectorArray::of_paper().description().clone();
+        description.viewer.height_m = height_m;
+        let array = ProjectorArray::new(description).unwrap();
+        let points: Vec<DVec3> = seed.into_iter().map(|(x, y, z)| DVec3::new(x, y, z)).collect();
+        let scale = array.largest_scale(points.iter().copied(), before_m);
+        // In halves of the screen, from its middle.
+        let outermost = |scale: f64| {
+            let seen = |p: &DVec3| {
+                let at = DVec3::Z * before_m + *p * scale;
+                let (x, y) = (at.x / (1.0 - at.z), height_m + (at.y - height_m) / (1.0 - at.z));
+                (x.abs() / 0.2).max(y.abs() / 0.15)
+            };
+            points.iter().map(seen).fold(0.0, f64::max)
+        };
+        prop_assume!(scale.is_finite() && points.iter().all(|p| before_m + p.z * scale < 0.9));
         prop_assert!((outermost(scale) - 1.0).abs() < 1e-9, "{}", outermost(scale));
     }
 }

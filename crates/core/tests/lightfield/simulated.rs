@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::quilt::{Model, Sampling};
 use wheatstone_core::lightfield::simulator::Eye;
-use wheatstone_core::lightfield::{Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_LEVEL};
+use wheatstone_core::lightfield::{Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_PIXELS};
 use wheatstone_core::metrics::compare;
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Aids, Cast};
@@ -135,7 +135,7 @@ fn matched_resolution(phantom: Phantom) {
     }
     assert!(slabs.windows(2).all(|pair| pair[0].depths_m.end == pair[1].depths_m.start));
     assert!(slabs.len() >= 3, "{slabs:?}");
-    assert_eq!(RESOLVED_LEVEL.pixels, 0.5_f64.sqrt());
+    assert_eq!(RESOLVED_PIXELS, 0.5_f64.sqrt());
     let casters: Vec<_> = levels.iter().map(wheatstone_core::reference::Caster::new).collect();
     let caster = |level: usize| if level == 0 { &scene.caster } else { &casters[level - 1] };
     let full = scene.caster.cast(&scene.parameters, &Aids::default(), &views);

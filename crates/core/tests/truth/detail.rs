@@ -60,7 +60,7 @@ fn over_black(cast: &Cast) -> RgbImage {
 fn what_is_near_is_cast_as_ever_and_what_is_far_by_a_fraction_of_the_samples() {
     let volume = Phantom::Sphere.cube(128).unwrap();
     let levels = Levels::of(&volume);
-    let detail = LevelOfDetail { pixels: 1.0 };
+    let detail = LevelOfDetail::Pixels(1.0);
     let slabs_from = |view: &View| detail.slabs(view, &levels.parameters, levels.casters.len());
 
     let near = seen_from(1.2, 1);

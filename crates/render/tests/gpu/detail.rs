@@ -17,7 +17,7 @@ use wheatstone_render::{Gpu, GpuVolume, Leap, Renderer, Sources, Target, TexelFo
 
 const SIZE: [u32; 2] = [61, 47];
 
-const DETAIL: LevelOfDetail = LevelOfDetail { pixels: 1.0 };
+const DETAIL: LevelOfDetail = LevelOfDetail::Pixels(1.0);
 
 fn seen_from(distance_m: f64) -> View {
     let eye = distance_m * DVec3::new(0.5, 0.3, 0.81).normalize_or_zero();

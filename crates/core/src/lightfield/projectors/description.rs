@@ -1,6 +1,6 @@
 //! What is written of a display of projectors.
 
-use super::super::error::{check, check_length_m, check_pixels, check_size_px};
+use super::super::error::{check, check_length_m, check_pixels, check_size_px, check_version};
 use super::{DisplayError, Packing, Projector, VirtualViewer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -43,9 +43,7 @@ impl Description {
     }
 
     pub(super) fn check(&self) -> Result<(), DisplayError> {
-        if self.wheatstone_projector_array != VERSION {
-            return Err(DisplayError::Version { found: self.wheatstone_projector_array, expected: VERSION });
-        }
+        check_version(self.wheatstone_projector_array, VERSION)?;
         check_length_m("screen_size_m[0]", self.screen_size_m[0])?;
         check_length_m("screen_size_m[1]", self.screen_size_m[1])?;
         check_length_m("pixel_size_m", self.pixel_size_m)?;

@@ -1,7 +1,6 @@
 //! Quilts: the views of a display behind lenses as tiles of one picture.
 
 mod depth_range;
-mod fit;
 mod model;
 mod name;
 mod tiles;

@@ -1,0 +1,89 @@
+//! How large a volume is at a light-field display, and where.
+
+use crate::camera::{AimArgs, turn_deg};
+use crate::failure::Failure;
+use crate::spec;
+use clap::Args;
+use glam::{DAffine3, DVec3};
+use std::ops::Range;
+
+/// Flags of where a volume stands at a display.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct StandArgs {
+    /// Length of the volume's longest side at the display, metres [default: as much as the screen shows in full].
+    #[arg(long, value_name = "M", value_parser = spec::within(1e-4..=1000.0), allow_negative_numbers = true)]
+    volume_size: Option<f64>,
+
+    /// How far before the screen the volume's centre is, metres; negative behind it.
+    #[arg(long, value_name = "M", default_value = "0", value_parser = spec::within(-1000.0..=1000.0), allow_negative_numbers = true)]
+    before_screen: f64,
+
+    /// Write N pictures, turning by 360/N degrees from one to the next.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
+    turntable: Option<u32>,
+}
+
+/// Where a volume stands, in each picture of a turntable.
+#[derive(Debug, Clone)]
+pub(crate) struct Stand {
+    /// Length of the volume's longest side, metres.
+    pub(crate) volume_size_m: f64,
+    /// How far before the screen the volume reaches in any picture, metres: from behind, which is negative.
+    pub(crate) reach_m: Range<f64>,
+    before_screen_m: f64,
+    /// The volume turned about its centre, its longest side of length 1.
+    turned: Vec<DAffine3>,
+    is_turning: bool,
+}
+
+impl StandArgs {
+    /// Where a volume stands before an eye so far from the screen, metres. Its visible corners are in a world in which its longest side
+    /// is 1 m; `largest_scale` tells by how much points may be scaled about a place before the screen to be seen in full.
+    pub(crate) fn resolve(
+        &self,
+        aim: &AimArgs,
+        corners: [DVec3; 8],
+        eye_from_screen_m: f64,
+        largest_scale: impl FnOnce(&[DVec3], f64) -> f64,
+    ) -> Result<Stand, Failure> {
+        let before_screen_m = self.before_screen;
+        if before_screen_m >= eye_from_screen_m {
+            return Err(Failure::input(format!(
+                "--before-screen must be less than the distance of the viewer, {eye_from_screen_m:.4} m"
+            )));
+        }
+        let frames = self.turntable.unwrap_or(1);
+        let turned: Vec<DAffine3> =
+            (0..frames).map(|frame| aim.orbit(turn_deg(frame, frames), 0.0).view_from_world()).collect();
+        let points: Vec<DVec3> =
+            turned.iter().flat_map(|turn| corners.map(|corner| turn.transform_point3(corner))).collect();
+        let volume_size_m = self.volume_size.unwrap_or_else(|| largest_scale(&points, before_screen_m));
+        if !(volume_size_m.is_finite() && volume_size_m > 0.0) {
+            return Err(Failure::input("nothing of the volume is visible: --volume-size is needed"));
+        }
+        let before_m = points.iter().map(|point| before_screen_m + volume_size_m * point.z);
+        let (least_m, most_m) =
+            before_m.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), z| (lo.min(z), hi.max(z)));
+        let is_turning = self.turntable.is_some();
+        Ok(Stand { volume_size_m, reach_m: least_m..most_m, before_screen_m, turned, is_turning })
+    }
+}
+
+impl Stand {
+    /// Where the volume's world is at the display, picture by picture.
+    pub(crate) fn displays_from_world(&self) -> impl Iterator<Item = DAffine3> {
+        let stand = DAffine3::from_translation(DVec3::Z * self.before_screen_m)
+            * DAffine3::from_scale(DVec3::splat(self.volume_size_m));
+        self.turned.iter().map(move |turn| stand * *turn)
+    }
+
+    /// Pictures that are made.
+    pub(crate) fn pictures(&self) -> u32 {
+        self.turned.len() as u32
+    }
+
+    /// Whether they are those of a turntable, be it of one.
+    pub(crate) fn is_turning(&self) -> bool {
+        self.is_turning
+    }
+}
