@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::spec;
 use crate::text_file::read_text_file;
 use clap::Args;
+use serde_json::{Value, json};
 use std::path::Path;
 use wheatstone_core::lightfield::quilt::Model;
 use wheatstone_core::lightfield::{DisplayError, Lenticular, ProjectorArray, QuiltDisplay};
@@ -56,7 +57,7 @@ pub(crate) struct ArrayArgs {
 }
 
 /// A display of either kind.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Display {
     /// Behind lenses.
     Lenses(QuiltDisplay),
@@ -106,15 +107,7 @@ impl DisplayArgs {
             screen_height_m: self.screen_height.unwrap_or(base.screen_height_m),
         };
         let display = display.checked().map_err(Failure::input)?;
-        if let Some([width, height]) = lenses.map(|lenses| lenses.panel_px) {
-            let panel_aspect = f64::from(width) / f64::from(height);
-            if (panel_aspect / display.aspect - 1.0).abs() > ASPECT_TOLERANCE {
-                return Err(Failure::input(format!(
-                    "the calibration is of a panel of {width}x{height} pixels, {panel_aspect:.4}: the display's aspect is {:.4}",
-                    display.aspect
-                )));
-            }
-        }
+        lenses.map_or(Ok(()), |lenses| check_panel(&display, lenses)).map_err(Failure::input)?;
         Ok(display)
     }
 }
@@ -132,6 +125,11 @@ impl ArrayArgs {
     }
 }
 
+/// The names of known displays.
+pub(crate) fn known_names() -> impl Iterator<Item = &'static str> {
+    Model::ALL.iter().map(|model| model.name()).chain([OF_PAPER])
+}
+
 /// A known display, or that of a file.
 pub(crate) fn named(name: &str) -> Result<Display, Failure> {
     if name == OF_PAPER {
@@ -147,10 +145,32 @@ pub(crate) fn named(name: &str) -> Result<Display, Failure> {
     Ok(Display::Lenses(model.display()))
 }
 
+/// Refuses lenses on a panel of another shape than the display's screen.
+pub(crate) fn check_panel(display: &QuiltDisplay, lenses: &Lenticular) -> Result<(), String> {
+    let [width, height] = lenses.panel_px;
+    let panel_aspect = f64::from(width) / f64::from(height);
+    if (panel_aspect / display.aspect - 1.0).abs() <= ASPECT_TOLERANCE {
+        return Ok(());
+    }
+    Err(format!(
+        "the calibration is of a panel of {width}x{height} pixels, {panel_aspect:.4}: the display's aspect is {:.4}",
+        display.aspect
+    ))
+}
+
+impl Display {
+    /// Its description.
+    pub(crate) fn to_json(&self) -> Value {
+        match self {
+            Self::Lenses(display) => json!(display),
+            Self::Projectors(array) => json!(array.description()),
+        }
+    }
+}
+
 /// Either kind of description.
-fn from_json(text: &str) -> Result<Display, DisplayError> {
-    let is_array =
-        serde_json::from_str::<serde_json::Value>(text)?.get("wheatstone_projector_array").is_some();
+pub(crate) fn from_json(text: &str) -> Result<Display, DisplayError> {
+    let is_array = serde_json::from_str::<Value>(text)?.get("wheatstone_projector_array").is_some();
     if is_array {
         ProjectorArray::from_json(text).map(Display::Projectors)
     } else {

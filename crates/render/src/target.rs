@@ -142,6 +142,11 @@ impl Target {
         }
     }
 
+    /// The colours on the device, for passes that load them: premultiplied, 32-bit floats.
+    pub fn color_view(&self) -> wgpu::TextureView {
+        self.color.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size

@@ -188,10 +188,7 @@ impl Shown {
             Self::Quilt { display, .. } | Self::Interlaced { display, .. } => {
                 DVec3::Z * display.focal_distance_m
             }
-            Self::Projectors { array, .. } => {
-                let viewer = array.description().viewer;
-                DVec3::new(0.0, viewer.height_m, viewer.distance_m)
-            }
+            Self::Projectors { array, .. } => array.virtual_viewer_m(),
         }
     }
 

@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::layering::LayeringArgs;
 use crate::output::print_json;
 use crate::spec;
-use crate::viewer::state::{Edit, Layers};
+use crate::text_file::read_text_file;
+use crate::viewer::state::{Arrangement, Calibration, Edit, Layers, ShownDisplay};
 use crate::viewer::{Opening, Player, Source, random_steps, read_steps, run_headless, run_window};
 use crate::volume_args::RawArgs;
 use anyhow::anyhow;
@@ -19,6 +20,8 @@ use wheatstone_render::GpuError;
     wheatstone view\n  \
     wheatstone view head.nii.gz\n  \
     wheatstone view saved.json\n  \
+    wheatstone view head.nii.gz --display go\n  \
+    wheatstone view head.nii.gz --display portrait --interlace visual.json\n  \
     wheatstone view head.nii.gz --script session.jsonl --json\n  \
     xvfb-run wheatstone view --soak 60 --seed 1 --json\n\n\
     Press ? in the window for the keys.")]
@@ -51,12 +54,24 @@ pub(crate) struct ViewArgs {
     #[arg(long)]
     json: bool,
 
+    /// Show the volume on a light-field display: portrait, go, 16, 32, 65, 16-landscape, 16-portrait, 32-landscape, 32-portrait,
+    /// agus-2008 or a description.
+    #[arg(long, value_name = "NAME|FILE.json")]
+    display: Option<String>,
+
+    /// Show the picture for the panel of the display behind lenses, by its calibration (visual.json) [display: portrait].
+    #[arg(long, value_name = "CALIBRATION.json")]
+    interlace: Option<PathBuf>,
+
     #[command(flatten)]
     layering: LayeringArgs,
 
     #[command(flatten)]
     raw: RawArgs,
 }
+
+/// Most bytes of a calibration.
+const MOST_BYTES: u64 = 1 << 22;
 
 /// Runs the command.
 pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
@@ -93,7 +108,23 @@ impl ViewArgs {
     /// What flags say of what is shown, whatever a saved view says.
     fn edits(&self) -> Result<Vec<Edit>, Failure> {
         let layers = Layers::from(&self.layering.resolve()?);
-        Ok(self.layering.is_given().then_some(Edit::Layers(layers)).into_iter().collect())
+        let layers = self.layering.is_given().then_some(Edit::Layers(layers));
+        Ok(layers.into_iter().chain(self.edits_of_display()?).collect())
+    }
+
+    fn edits_of_display(&self) -> Result<Vec<Edit>, Failure> {
+        let mut edits = Vec::new();
+        if let Some(name) = &self.display {
+            edits.push(Edit::Display(ShownDisplay::named(name)?));
+            edits.push(Edit::Arrangement(Arrangement::LightField));
+        }
+        if let Some(path) = &self.interlace {
+            let calibration =
+                read_text_file(path, MOST_BYTES, "a calibration", Calibration::from_visual_json)?;
+            edits.push(Edit::Calibration(Some(calibration)));
+            edits.push(Edit::Arrangement(Arrangement::Panel));
+        }
+        Ok(edits)
     }
 
     fn player(&self) -> Result<Option<Player>, Failure> {

@@ -1,7 +1,7 @@
 //! The volume on the device, and the pictures that are cast of it under a budget.
 
 use super::loading::{Arrived, Skipping};
-use super::state::{Clip, EyeMethod, Look, State, Transfer, WarpName};
+use super::state::{Arrangement, Clip, EyeMethod, Look, State, Transfer, WarpName};
 use crate::failure::Failure;
 use crate::layering::Layering;
 use crate::look::ModeName;
@@ -223,8 +223,20 @@ pub(crate) fn seen(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> 
     Ok(state.stereo.views(&middle(state, size)?, state.camera.distance_m))
 }
 
-/// What is cast in an area of some pixels: a view for each eye, or one in the middle for both.
+/// What is cast in an area of some pixels: a view for each eye, one in the middle for both, or those of a light-field display.
 pub(crate) fn views(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> {
+    let light_field = &state.light_field;
+    let tile_size = match state.stereo.arrangement {
+        Arrangement::Quilt => light_field.tile_size_beside(size),
+        Arrangement::LightField | Arrangement::Panel => light_field.tile_size_behind(),
+        Arrangement::Mono | Arrangement::SideBySide | Arrangement::Anaglyph => {
+            return eyes_views(state, size);
+        }
+    };
+    light_field.views(&state.camera, tile_size).map_err(Failure::input)
+}
+
+fn eyes_views(state: &State, size: [u32; 2]) -> Result<Vec<View>, Failure> {
     match state.stereo.method {
         EyeMethod::TwoCasts => seen(state, size),
         EyeMethod::OneCast => Ok(vec![middle(state, size)?]),
@@ -241,7 +253,9 @@ fn placement(grid: &Grid, look: &Look) -> Placement {
 
 /// Whether volumetric warps are wanted of what has layers.
 fn keeps_layers(state: &State) -> bool {
-    state.pace.warp == WarpName::Volumetric && state.look.mode == ModeName::Dvr
+    state.pace.warp == WarpName::Volumetric
+        && state.look.mode == ModeName::Dvr
+        && !state.stereo.arrangement.is_of_display()
 }
 
 fn prepare(

@@ -26,6 +26,8 @@ pub(crate) enum Command {
     Turntable { pictures: u32, path: PathBuf },
     /// Takes a transfer function by name or from a file, as `--tf` does.
     Preset(String),
+    /// Fills the whole screen with the window, or no longer.
+    FullScreen,
     /// Ends the program.
     Quit,
     /// Changes what is shown.

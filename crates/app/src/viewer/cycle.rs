@@ -86,6 +86,11 @@ impl Viewer {
         &self.gpu
     }
 
+    /// Whether the window is to fill the whole screen.
+    pub(crate) fn fills_screen(&self) -> bool {
+        self.session.fills_screen()
+    }
+
     /// Whether the program is to end.
     pub(crate) fn has_quit(&self) -> bool {
         self.session.has_quit()
@@ -138,7 +143,7 @@ impl Viewer {
         self.survive(followed)?;
         let mut panels = Panels::new(&self.context, &mut output.0, size);
         self.screen.update(&self.gpu, &mut panels);
-        let pictures = self.pictures(pixels)?;
+        let (pictures, has_picture) = self.pictures(pixels)?;
         if let Some(sheet) = canvas.sheet(&self.gpu) {
             let submission = self.screen.draw(&self.gpu, &sheet.view(), &pictures, &panels);
             if let Sheet::Window(texture) = sheet {
@@ -146,13 +151,13 @@ impl Viewer {
             }
             let waited = self.gpu.wait_for(submission);
             self.survive(waited.map_err(Failure::Gpu))?;
-            self.report.shown(pictures.eyes.is_some());
+            self.report.shown(has_picture);
             let due: Vec<Instant> = due.iter().map(|due| due.at).collect();
             self.report.latencies.record(&due, Instant::now());
         } else {
             self.repaint_at = Some(Instant::now() + TRY_AGAIN);
         }
-        self.capture(&pictures, &panels)?;
+        self.capture(&pictures, has_picture, &panels)?;
         self.screen.free(&panels);
         self.drawn_pictures = self.casting.pictures();
         self.measure(wanted, begun);
@@ -248,10 +253,40 @@ impl Viewer {
         (output, area)
     }
 
-    fn pictures(&mut self, area: Area) -> Result<Pictures, Failure> {
+    /// What is to be shown in an area, and whether it shows something.
+    fn pictures(&mut self, area: Area) -> Result<(Pictures, bool), Failure> {
+        if self.session.state().stereo.arrangement.is_of_display() {
+            self.display_pictures(area)
+        } else {
+            self.screen.show_eyes();
+            let pictures = self.eyes_pictures(area)?;
+            let has_picture = pictures.eyes.is_some();
+            Ok((pictures, has_picture))
+        }
+    }
+
+    /// The views of a light-field display: a refresh shows the newest whole picture of all of them, so that none lags behind.
+    fn display_pictures(&mut self, area: Area) -> Result<(Pictures, bool), Failure> {
         let state = self.session.state();
         let (arrangement, background) = (state.stereo.arrangement, state.look.background);
-        let eyes = match (self.casting.front(), seen(state, area.size())) {
+        let pictures = Pictures { arrangement, area, background, eyes: None };
+        let shown = match self.casting.front() {
+            Some(front) => {
+                let picture = self.casting.pictures();
+                self.screen.show_display(&self.gpu, (front, picture), &pictures, &state.light_field)
+            }
+            None => Ok(false),
+        };
+        let has_picture = self.survive(shown)?.unwrap_or(false);
+        Ok((pictures, has_picture))
+    }
+
+    fn eyes_pictures(&mut self, area: Area) -> Result<Pictures, Failure> {
+        let state = self.session.state();
+        let (arrangement, background) = (state.stereo.arrangement, state.look.background);
+        // What was cast for a display is not for eyes.
+        let front = self.casting.front().filter(|front| front.pictures().count() <= 2);
+        let eyes = match (front, seen(state, area.size())) {
             (Some(front), Ok(views)) => {
                 let layering = state.pace.layers.layering().map_err(Failure::input)?;
                 self.eyes.step_by(layering.settings);
@@ -266,10 +301,10 @@ impl Viewer {
     }
 
     /// Writes the files that are asked for.
-    fn capture(&mut self, pictures: &Pictures, panels: &Panels) -> Result<(), Failure> {
+    fn capture(&mut self, pictures: &Pictures, has_picture: bool, panels: &Panels) -> Result<(), Failure> {
         let is_at_rest = self.casting.is_resting()
             && self.session.progress().is_none()
-            && pictures.eyes.is_some()
+            && has_picture
             && self.casting.pictures() == self.drawn_pictures;
         let Self { gpu, session, screen, .. } = self;
         session.capture(is_at_rest, |capture| screen.write(gpu, capture, pictures, panels))

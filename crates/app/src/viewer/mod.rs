@@ -25,6 +25,7 @@ mod script;
 pub(crate) mod session;
 pub(crate) mod show;
 pub(crate) mod state;
+mod tiles;
 pub(crate) mod timings;
 pub(crate) mod ui;
 pub(crate) mod window;

@@ -3,7 +3,8 @@
 use super::canvas::{read_texture, texture};
 use super::capture::{Capture, Subject};
 use super::show::{Area, Show};
-use super::state::Arrangement;
+use super::state::{Arrangement, LightField};
+use super::tiles::{HowTiles, Tiles};
 use super::ui::PANEL;
 use crate::failure::Failure;
 use crate::picture::{Bits, write_png};
@@ -11,12 +12,17 @@ use egui::epaint::ClippedPrimitive;
 use egui::{FullOutput, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use wheatstone_render::Gpu;
+use wheatstone_render::live::Front;
 
 /// What is kept between refreshes.
 pub(crate) struct Screen {
     /// Of what is drawn on.
     format: wgpu::TextureFormat,
     show: Show,
+    /// Made when first asked for.
+    tiles: Option<Tiles>,
+    /// The display whose views are shown, if some are.
+    light_field: Option<LightField>,
     panels: Renderer,
 }
 
@@ -26,7 +32,7 @@ pub(crate) struct Pictures {
     /// In the window, pixels.
     pub(crate) area: Area,
     pub(crate) background: [f32; 3],
-    /// Of the left and the right eye; none as long as there are none.
+    /// Of the left and the right eye; none as long as there are none, and of the views of a light-field display.
     pub(crate) eyes: Option<[wgpu::TextureView; 2]>,
 }
 
@@ -35,6 +41,14 @@ pub(crate) struct Panels {
     primitives: Vec<ClippedPrimitive>,
     descriptor: ScreenDescriptor,
     textures: TexturesDelta,
+}
+
+impl Pictures {
+    /// How the views of a display are drawn in their place.
+    fn of_display<'a>(&self, light_field: &'a LightField) -> HowTiles<'a> {
+        let Self { arrangement, area, background, .. } = *self;
+        HowTiles { arrangement, area, background, light_field }
+    }
 }
 
 impl Panels {
@@ -55,6 +69,8 @@ impl Screen {
         Self {
             format,
             show: Show::new(gpu.device(), format),
+            tiles: None,
+            light_field: None,
             panels: Renderer::new(
                 gpu.device(),
                 format,
@@ -70,6 +86,32 @@ impl Screen {
                 self.panels.update_texture(gpu.device(), gpu.queue(), id, delta);
             }
         }
+    }
+
+    /// From now on shows the views of a display's newest whole picture, the `picture`th that has been cast; whether there are some.
+    pub(crate) fn show_display(
+        &mut self,
+        gpu: &Gpu,
+        (front, picture): (&Front, u64),
+        pictures: &Pictures,
+        light_field: &LightField,
+    ) -> Result<bool, Failure> {
+        let tiles = match self.tiles.take() {
+            Some(tiles) => self.tiles.insert(tiles),
+            None => self.tiles.insert(Tiles::new(gpu, self.format)?),
+        };
+        self.light_field = None;
+        if !tiles.keep(gpu, front, picture, light_field)? {
+            return Ok(false);
+        }
+        tiles.prepare(gpu, &pictures.of_display(light_field))?;
+        self.light_field = Some(light_field.clone());
+        Ok(true)
+    }
+
+    /// From now on shows eyes' pictures alone.
+    pub(crate) fn show_eyes(&mut self) {
+        self.light_field = None;
     }
 
     /// Draws pictures and panels.
@@ -139,6 +181,8 @@ impl Screen {
         if let Some([left, right]) = eyes {
             let how = (*arrangement, *area, *background);
             self.show.draw(gpu.device(), gpu.queue(), pass, how, [left, right]);
+        } else if let (Some(tiles), Some(light_field)) = (&self.tiles, &self.light_field) {
+            tiles.draw(gpu, pass, &pictures.of_display(light_field));
         }
     }
 }

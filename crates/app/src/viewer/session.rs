@@ -33,6 +33,7 @@ pub(crate) struct Session {
     pub(crate) notes: Notes,
     captures: Vec<Capture>,
     turntable: Option<Turntable>,
+    fills_screen: bool,
     has_quit: bool,
 }
 
@@ -75,6 +76,7 @@ impl Session {
             notes: Notes::default(),
             captures: Vec::new(),
             turntable: None,
+            fills_screen: false,
             has_quit: false,
         };
         match &source.file {
@@ -111,6 +113,11 @@ impl Session {
     /// How far a load is, if one is under way.
     pub(crate) fn progress(&self) -> Option<Progress> {
         self.pending.as_ref().map(|pending| pending.loading.progress())
+    }
+
+    /// Whether the window is to fill the whole screen.
+    pub(crate) fn fills_screen(&self) -> bool {
+        self.fills_screen
     }
 
     /// Whether the program is to end.
@@ -223,6 +230,10 @@ impl Session {
                 Ok(())
             }
             Command::Preset(name) => self.choose_preset(name),
+            Command::FullScreen => {
+                self.fills_screen = !self.fills_screen;
+                Ok(())
+            }
             Command::Quit => {
                 self.has_quit = true;
                 Ok(())

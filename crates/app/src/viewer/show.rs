@@ -47,7 +47,14 @@ struct ShowUniform {
     area: [f32; 4],
 }
 
-/// Pipelines, one for each arrangement.
+/// The arrangements of eyes' pictures; what a light-field display shows is one picture where there are eyes.
+const ENTRY_POINTS: [(Arrangement, &str); 3] = [
+    (Arrangement::Mono, "mono"),
+    (Arrangement::SideBySide, "side_by_side"),
+    (Arrangement::Anaglyph, "anaglyph"),
+];
+
+/// Pipelines, one for each arrangement of eyes' pictures.
 pub(crate) struct Show {
     layout: wgpu::BindGroupLayout,
     pipelines: HashMap<Arrangement, wgpu::RenderPipeline>,
@@ -93,7 +100,7 @@ impl Show {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let pipeline = |arrangement: Arrangement| {
+        let pipeline = |entry_point: &str| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("show"),
                 layout: Some(&pipeline_layout),
@@ -105,7 +112,7 @@ impl Show {
                 },
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
-                    entry_point: Some(entry_point(arrangement)),
+                    entry_point: Some(entry_point),
                     compilation_options: Default::default(),
                     targets: &[Some(format.into())],
                 }),
@@ -116,8 +123,10 @@ impl Show {
                 cache: None,
             })
         };
-        let pipelines =
-            Arrangement::ALL.into_iter().map(|arrangement| (arrangement, pipeline(arrangement))).collect();
+        let pipelines = ENTRY_POINTS
+            .into_iter()
+            .map(|(arrangement, entry_point)| (arrangement, pipeline(entry_point)))
+            .collect();
         let uniform = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("show"),
             size: size_of::<ShowUniform>() as u64,
@@ -142,7 +151,8 @@ impl Show {
         (arrangement, area, background): (Arrangement, Area, [f32; 3]),
         eyes: [&wgpu::TextureView; 2],
     ) {
-        let Some(pipeline) = self.pipelines.get(&arrangement).filter(|_| area.width > 0 && area.height > 0)
+        let of_eyes = if arrangement.is_of_display() { Arrangement::Mono } else { arrangement };
+        let Some(pipeline) = self.pipelines.get(&of_eyes).filter(|_| area.width > 0 && area.height > 0)
         else {
             return;
         };
@@ -166,14 +176,6 @@ impl Show {
     }
 }
 
-fn entry_point(arrangement: Arrangement) -> &'static str {
-    match arrangement {
-        Arrangement::Mono => "mono",
-        Arrangement::SideBySide => "side_by_side",
-        Arrangement::Anaglyph => "anaglyph",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,7 +184,7 @@ mod tests {
     fn every_pipeline_builds_on_the_noop_device() {
         let (device, _) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         let show = Show::new(&device, wgpu::TextureFormat::Bgra8Unorm);
-        assert_eq!(show.pipelines.len(), Arrangement::ALL.len());
+        assert_eq!(show.pipelines.len(), ENTRY_POINTS.len());
     }
 
     #[test]

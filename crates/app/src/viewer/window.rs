@@ -18,7 +18,7 @@ use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
-use winit::window::{Window, WindowId};
+use winit::window::{Fullscreen, Window, WindowId};
 
 /// Something has happened in the background.
 struct Wake;
@@ -119,6 +119,10 @@ impl Open {
         let input = self.input.take_egui_input(&self.window);
         let refreshed = self.viewer.refresh(input, &mut self.canvas)?;
         self.input.handle_platform_output(&self.window, refreshed.platform);
+        if self.viewer.fills_screen() != self.window.fullscreen().is_some() {
+            let fullscreen = self.viewer.fills_screen().then_some(Fullscreen::Borderless(None));
+            self.window.set_fullscreen(fullscreen);
+        }
         if let Some([width, height]) = refreshed.resize {
             let size = self.window.request_inner_size(LogicalSize::new(width, height));
             size.map_or(Ok(()), |size| self.canvas.resize(self.viewer.gpu(), size.into()))?;

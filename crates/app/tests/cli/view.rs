@@ -289,3 +289,111 @@ fn a_raw_file_is_opened_by_flags_whatever_its_name_and_again_by_its_view() {
     view("sphere.nrrd", &format!("{shooting}{opening}{{\"do\": {{\"picture\": \"b.png\"}}}}"), &[]);
     assert_eq!(picture(&bench, "a.png"), picture(&bench, "b.png"), "the camera is that of the view");
 }
+
+/// A display of 3 × 2 views of 32 × 32 pixels.
+const SMALL_DISPLAY: &str = r#"{"columns": 3, "rows": 2, "quilt_size_px": [96, 64], "aspect": 1.0, "view_cone_deg": 40.0,
+    "focal_distance_m": 0.5, "screen_height_m": 0.16}"#;
+
+/// A calibration of a panel of 192 × 192 pixels for it.
+const SMALL_PANEL: &str = r#"{"pitch": {"value": 20}, "slope": {"value": -7}, "center": {"value": 0.3}, "DPI": {"value": 100},
+    "screenW": {"value": 192}, "screenH": {"value": 192}, "viewCone": {"value": 40}, "flipImageX": {"value": 1}}"#;
+
+fn as_picture(image: &RgbImage) -> wheatstone_core::image::RgbImage {
+    let rgb = image.pixels().map(|pixel| pixel.0.map(|level| f32::from(level) / 255.0)).collect();
+    wheatstone_core::image::RgbImage { width: image.width(), height: image.height(), rgb }
+}
+
+/// The middle of a picture, of a size.
+fn middle(picture: &RgbImage, [width, height]: [u32; 2]) -> RgbImage {
+    let [left, top] = [(picture.width() - width) / 2, (picture.height() - height) / 2];
+    image::imageops::crop_imm(picture, left, top, width, height).to_image()
+}
+
+#[test]
+fn a_light_field_display_is_shown_as_it_is_sent_as_it_is_seen_and_as_its_panel_shows_it() {
+    use glam::DVec3;
+    use wheatstone_core::lightfield::simulator::Eye;
+    use wheatstone_core::lightfield::{Lenticular, QuiltDisplay};
+    if !needs_adapter() {
+        return;
+    }
+    let one_line = |text: &str| text.replace('\n', "");
+    let script = format!(
+        r#"
+{{"wait_for": "rest"}}
+{{"do": {{"display": {}}}}}
+{{"do": {{"arrangement": "quilt"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"picture": "quilt.png"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"arrangement": "light_field"}}}}
+{{"do": {{"display_eye": [0.07, 0.02, 0.6]}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"picture": "seen.png"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"calibration": {}}}}}
+{{"do": {{"arrangement": "panel"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"picture": "panel.png"}}}}
+{{"do": {{"save": "view.json"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"arrangement": "mono"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"open": "view.json"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"picture": "again.png"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"display": "agus-2008"}}}}
+{{"wait_for": "rest"}}
+{{"do": {{"picture": "projectors.png"}}}}
+"#,
+        one_line(SMALL_DISPLAY),
+        one_line(SMALL_PANEL)
+    );
+    let (bench, run) = play(&script, &["--headless"], None);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let display = QuiltDisplay::from_json(SMALL_DISPLAY).unwrap();
+    let quilt = as_picture(&middle(&picture(&bench, "quilt.png"), [96, 64]));
+    let views = display.views_of(&quilt).unwrap();
+    let lit = |view: &wheatstone_core::image::RgbImage| {
+        view.rgb.iter().filter(|rgb| rgb.iter().any(|&level| level > 0.25)).count()
+    };
+    assert!(views.iter().all(|view| lit(view) > 200) && views[0] != views[5]);
+
+    let whole = picture(&bench, "seen.png");
+    let side = whole.width().min(whole.height());
+    let seen = as_picture(&middle(&whole, [side, side]));
+    let eye = Eye::new(DVec3::new(0.07, 0.02, 0.6), [side, side]).unwrap();
+    let expected = display.seen_from(&eye, &views).unwrap();
+    let apart = seen.rgb.iter().flatten().zip(expected.rgb.iter().flatten());
+    let furthest = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(furthest < 2.5 / 255.0, "{furthest}");
+
+    let panel = image::imageops::crop_imm(&picture(&bench, "panel.png"), 0, 0, 192, 192).to_image();
+    let lenses = Lenticular::from_visual_json(SMALL_PANEL).unwrap();
+    let interlaced = lenses.interlace(&display, &quilt).unwrap();
+    assert_eq!(panel.into_raw(), interlaced.to_rgb8());
+    assert_eq!(picture(&bench, "panel.png"), picture(&bench, "again.png"));
+    // Of a display without lenses there is no panel: what the eye sees is shown.
+    assert!(lit(&as_picture(&picture(&bench, "projectors.png"))) > 5000);
+}
+
+#[test]
+fn displays_that_are_none_are_refused_before_anything_is_opened() {
+    let bench = Bench::new();
+    std::fs::write(bench.path("visual.json"), SMALL_PANEL).unwrap();
+    std::fs::write(bench.path("none.json"), r#"{"slope": 1}"#).unwrap();
+    std::fs::write(bench.path("s.jsonl"), "{\"do\": \"quit\"}").unwrap();
+    for (flags, says) in [
+        (&["--display", "tv"][..], "portrait"),
+        (&["--display", "missing.json"], "missing.json"),
+        (&["--interlace", "none.json"], "none.json: pitch is missing"),
+        (&["--interlace", "visual.json"], "the display's aspect is 0.75"),
+        (&["--display", "agus-2008", "--interlace", "visual.json"], "has projectors"),
+    ] {
+        let args = [&["view", "sphere.nrrd", "--headless", "--script", "s.jsonl"], flags].concat();
+        let run = bench.run(&args);
+        assert_eq!(run.code, 2, "{flags:?}: {}", run.stderr);
+        assert!(run.stderr.contains(says), "{flags:?}: {}", run.stderr);
+    }
+}

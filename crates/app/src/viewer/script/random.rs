@@ -91,7 +91,7 @@ fn command(rng: &mut Rng) -> Command {
             let normal = DVec3::new(signed(rng), signed(rng), signed(rng)).try_normalize();
             Plane { normal: normal.unwrap_or(DVec3::X), offset_m: 0.3 * signed(rng) }
         })),
-        18 => Edit::Arrangement(Arrangement::ALL[rng.usize(0..3)]),
+        18 => Edit::Arrangement(Arrangement::ALL[rng.usize(0..5)]),
         19 => Edit::EyeMethod(EyeMethod::ALL[rng.usize(0..2)]),
         20 => Edit::Warp(WarpName::ALL[rng.usize(0..WarpName::ALL.len())]),
         21 => return Command::Preset(["auto", "mri-brain-t1", "viridis"][rng.usize(0..3)].to_owned()),

@@ -1,9 +1,13 @@
 //! The one way to change a state.
 
 use super::look::shading_text;
-use super::{Arrangement, Camera, Clip, EyeMethod, Face, Layers, Plane, State, Transfer, WarpName};
+use super::{
+    Arrangement, Calibration, Camera, Clip, EyeMethod, Face, Layers, Plane, ShownDisplay, State, Transfer,
+    WarpName,
+};
 use crate::camera::Up;
 use crate::look::ModeName;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use wheatstone_core::scene::Shading;
 
@@ -86,6 +90,13 @@ pub(crate) enum Edit {
     EyeMethod(EyeMethod),
     /// Between the eyes, metres.
     EyeDistance(f64),
+    /// The light-field display, by name or description; the eye goes where it is made for.
+    Display(ShownDisplay),
+    /// How the display's lenses lie on its panel.
+    Calibration(Option<Calibration>),
+    /// Where the eye is before the display, metres to the right, up and towards it from the middle of the screen; none is where the
+    /// display is made for.
+    DisplayEye(Option<DVec3>),
     Warp(WarpName),
     /// What volumetric warps keep, and how rays step through it.
     Layers(Layers),
@@ -130,6 +141,15 @@ impl Edit {
             Self::Arrangement(arrangement) => state.stereo.arrangement = arrangement,
             Self::EyeMethod(method) => state.stereo.method = method,
             Self::EyeDistance(distance_m) => state.stereo.eye_distance_m = distance_m,
+            Self::Display(ref display) => {
+                state.light_field.display.clone_from(display);
+                (state.light_field.calibration, state.light_field.eye_m) = (None, None);
+                if state.stereo.arrangement == Arrangement::Panel {
+                    state.stereo.arrangement = Arrangement::LightField;
+                }
+            }
+            Self::Calibration(ref calibration) => state.light_field.calibration.clone_from(calibration),
+            Self::DisplayEye(eye_m) => state.light_field.eye_m = eye_m,
             Self::Warp(warp) => state.pace.warp = warp,
             Self::Layers(ref layers) => state.pace.layers.clone_from(layers),
             Self::Refresh(refresh_ms) => state.pace.refresh_ms = refresh_ms,

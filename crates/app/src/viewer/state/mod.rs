@@ -3,6 +3,7 @@
 mod camera;
 mod clip;
 mod edit;
+mod light_field;
 mod look;
 mod pace;
 mod raw;
@@ -12,6 +13,7 @@ mod transfer;
 pub(crate) use camera::{Camera, Face};
 pub(crate) use clip::{Clip, Plane};
 pub(crate) use edit::Edit;
+pub(crate) use light_field::{Calibration, Grid, LightField, ShownDisplay};
 pub(crate) use look::Look;
 pub(crate) use pace::{Layers, Pace, WarpName};
 pub(crate) use stereo::{Arrangement, EyeMethod, Stereo};
@@ -42,6 +44,9 @@ pub(crate) struct State {
     pub(crate) transfer: Transfer,
     pub(crate) clip: Clip,
     pub(crate) stereo: Stereo,
+    /// For the arrangements of light-field displays.
+    #[serde(default)]
+    pub(crate) light_field: LightField,
     pub(crate) pace: Pace,
 }
 
@@ -78,6 +83,7 @@ impl Default for State {
             transfer: Transfer::default(),
             clip: Clip::default(),
             stereo: Stereo::default(),
+            light_field: LightField::default(),
             pace: Pace::default(),
         }
     }
@@ -124,6 +130,20 @@ impl State {
         })
     }
 
+    /// What the picture can be arranged as.
+    pub(crate) fn arrangements(&self) -> Vec<Arrangement> {
+        let has_panel = self.light_field.lenses().is_some();
+        let can_be = |arrangement: &Arrangement| *arrangement != Arrangement::Panel || has_panel;
+        Arrangement::ALL.into_iter().filter(can_be).collect()
+    }
+
+    fn check_arrangement(&self) -> Result<(), String> {
+        if self.arrangements().contains(&self.stereo.arrangement) {
+            return Ok(());
+        }
+        Err("arrangement is panel: needs a display behind lenses and its calibration".to_owned())
+    }
+
     fn check(&self) -> Result<(), StateError> {
         let parts = [
             ("camera", self.camera.check()),
@@ -131,6 +151,8 @@ impl State {
             ("transfer", self.transfer.check()),
             ("clip", self.clip.check()),
             ("stereo", self.stereo.check()),
+            ("light_field", self.light_field.check()),
+            ("stereo", self.check_arrangement()),
             ("pace", self.pace.check()),
         ];
         parts.into_iter().try_for_each(|(part, check)| check.map_err(|reason| of_part(part, reason)))
@@ -202,6 +224,21 @@ mod tests {
         let mut view: serde_json::Value = serde_json::from_str(&edited().to_json().unwrap()).unwrap();
         view["pace"].as_object_mut().unwrap().remove("layers").unwrap();
         assert_eq!(State::from_json(&view.to_string()).unwrap(), edited());
+    }
+
+    #[test]
+    fn views_saved_before_displays_were_have_the_default_one_and_panels_need_a_calibration() {
+        let mut view: serde_json::Value = serde_json::from_str(&edited().to_json().unwrap()).unwrap();
+        view.as_object_mut().unwrap().remove("light_field").unwrap();
+        assert_eq!(State::from_json(&view.to_string()).unwrap(), edited());
+        view["stereo"]["arrangement"] = "panel".into();
+        assert!(State::from_json(&view.to_string()).unwrap_err().to_string().contains("needs a display"));
+        view["light_field"] = serde_json::json!({ "calibration": {
+            "pitch": 50, "slope": -7, "center": 0.4, "DPI": 324, "screenW": 1536, "screenH": 2048,
+        } });
+        assert!(State::from_json(&view.to_string()).is_ok());
+        view["light_field"]["display"] = "agus-2008".into();
+        assert!(State::from_json(&view.to_string()).unwrap_err().to_string().contains("has projectors"));
     }
 
     #[test]

@@ -25,6 +25,12 @@ pub(crate) enum Arrangement {
     SideBySide,
     /// Red for the left eye, cyan for the right one.
     Anaglyph,
+    /// The views of a light-field display beside each other, as they are sent to it.
+    Quilt,
+    /// What an eye sees of a light-field display.
+    LightField,
+    /// The picture for the panel of a light-field display behind lenses, pixel by pixel.
+    Panel,
 }
 
 /// Where the eyes' pictures come from.
@@ -39,13 +45,25 @@ pub(crate) enum EyeMethod {
 }
 
 impl Arrangement {
-    pub(crate) const ALL: [Self; 3] = [Self::Mono, Self::SideBySide, Self::Anaglyph];
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Mono, Self::SideBySide, Self::Anaglyph, Self::Quilt, Self::LightField, Self::Panel];
+
+    /// Whether it is of the views of a light-field display.
+    pub(crate) fn is_of_display(self) -> bool {
+        match self {
+            Self::Quilt | Self::LightField | Self::Panel => true,
+            Self::Mono | Self::SideBySide | Self::Anaglyph => false,
+        }
+    }
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Mono => "one eye",
             Self::SideBySide => "side by side",
             Self::Anaglyph => "anaglyph",
+            Self::Quilt => "quilt",
+            Self::LightField => "light field",
+            Self::Panel => "panel, interlaced",
         }
     }
 }
@@ -72,14 +90,20 @@ impl Stereo {
     pub(crate) fn eye_size(&self, [width, height]: [u32; 2]) -> [u32; 2] {
         match self.arrangement {
             Arrangement::SideBySide => [(width / 2).max(1), height],
-            Arrangement::Mono | Arrangement::Anaglyph => [width, height],
+            Arrangement::Mono
+            | Arrangement::Anaglyph
+            | Arrangement::Quilt
+            | Arrangement::LightField
+            | Arrangement::Panel => [width, height],
         }
     }
 
     /// What the eyes see, left one first; both see what is `convergence_m` away at the same place.
     pub(crate) fn views(&self, middle: &View, convergence_m: f64) -> Vec<View> {
         let rig = match self.arrangement {
-            Arrangement::Mono => Rig::Mono,
+            Arrangement::Mono | Arrangement::Quilt | Arrangement::LightField | Arrangement::Panel => {
+                Rig::Mono
+            }
             Arrangement::SideBySide | Arrangement::Anaglyph => {
                 Rig::Stereo { eye_distance_m: self.eye_distance_m, convergence_m }
             }

@@ -39,8 +39,11 @@ impl Beholder {
     }
 
     /// What is seen where in the picture's area: by each eye side by side, or by one. For the camera that is the middle between
-    /// the eyes, for a headset the left one.
+    /// the eyes, for a headset the left one. Nothing of a light-field display's many views.
     pub(super) fn seen(&self, state: &State, area: Rect) -> Vec<(View, Rect)> {
+        if matches!(self, Self::Camera) && state.stereo.arrangement.is_of_display() {
+            return Vec::new();
+        }
         let is_side_by_side = state.stereo.arrangement == Arrangement::SideBySide;
         let views = match self {
             Self::Camera => {

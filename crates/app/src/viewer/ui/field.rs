@@ -19,7 +19,7 @@ pub(super) fn rows(ui: &mut Ui, id: &str, contents: impl FnOnce(&mut Ui)) {
 }
 
 /// One of a few.
-pub(super) fn choice<T: Copy + PartialEq>(
+pub(super) fn choice<T: Clone + PartialEq>(
     ui: &mut Ui,
     name: &str,
     all: &[(T, &str)],
@@ -32,7 +32,7 @@ pub(super) fn choice<T: Copy + PartialEq>(
     ComboBox::from_id_salt(name).selected_text(text).width(150.0).show_ui(ui, |ui| {
         for (other, text) in all {
             if ui.selectable_label(*other == value, *text).clicked() {
-                asked.edit(edit(*other));
+                asked.edit(edit(other.clone()));
             }
         }
     });

@@ -5,7 +5,7 @@ use super::pointer::Tool;
 use super::{Asked, Beholder, Desk, Shown};
 use crate::look::ModeName;
 use crate::viewer::command::Command;
-use crate::viewer::state::{Arrangement, Edit, Plane, State, WarpName};
+use crate::viewer::state::{Edit, Plane, State, WarpName};
 use egui::{Context, Grid, Key, Modifiers, RichText, Ui, Window};
 use std::path::PathBuf;
 
@@ -37,7 +37,7 @@ const fn with_command(
 }
 
 /// Keys that act once.
-const SHORTCUTS: [Shortcut; 15] = [
+const SHORTCUTS: [Shortcut; 16] = [
     plain(Key::Questionmark, "?", "these keys", |desk, _, _| desk.shows_keys = !desk.shows_keys),
     plain(Key::Escape, "Esc", "put this list away", |desk, _, _| desk.shows_keys = false),
     plain(Key::H, "H", "hide or show the panels", |desk, _, _| desk.hides_panels = !desk.hides_panels),
@@ -59,11 +59,14 @@ const SHORTCUTS: [Shortcut; 15] = [
     plain(Key::P, "P", "clip plane", |_, state, asked| {
         asked.edit(Edit::ClipPlane(state.clip.plane.is_none().then(Plane::default)));
     }),
-    plain(Key::X, "X", "one eye, side by side, anaglyph", |_, state, asked| {
-        asked.edit(Edit::Arrangement(following(&Arrangement::ALL, state.stereo.arrangement)));
+    plain(Key::X, "X", "one eye, side by side, anaglyph, quilt, light field", |_, state, asked| {
+        asked.edit(Edit::Arrangement(following(&state.arrangements(), state.stereo.arrangement)));
     }),
     plain(Key::V, "V", "next warp", |_, state, asked| {
         asked.edit(Edit::Warp(following(&WarpName::ALL, state.pace.warp)));
+    }),
+    plain(Key::F11, "F11", "fill the whole screen, or no longer", |_, _, asked| {
+        asked.command(Command::FullScreen);
     }),
     plain(Key::F12, "F12", "write screenshot.png", |_, _, asked| {
         asked.command(Command::Screenshot(PathBuf::from("screenshot.png")));

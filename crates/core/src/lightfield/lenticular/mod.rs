@@ -5,6 +5,7 @@ mod visual_json;
 
 use super::DisplayError;
 use super::error::{check, check_size_px};
+use rayon::prelude::*;
 
 /// How the lenses of one display lie on its panel, as measured by its maker: the numbers of the display's `visual.json`.
 ///
@@ -158,6 +159,19 @@ impl Lenticular {
     /// Which of so many views a sub-pixel shows.
     pub fn view(&self, column: u32, row: u32, channel: usize, view_count: u32) -> u32 {
         ((self.share(column, row, channel) * f64::from(view_count)) as u32).min(view_count - 1)
+    }
+
+    /// The views that the red, green and blue of each pixel show, of at most 256, row by row from the top left.
+    ///
+    /// # Panics
+    /// If there are more views.
+    pub fn views(&self, view_count: u32) -> Vec<[u8; 3]> {
+        assert!(view_count <= 256, "{view_count} views: a byte tells 256 apart");
+        let [width, height] = self.panel_px;
+        let of_pixel =
+            |column, row| [0, 1, 2].map(|channel| self.view(column, row, channel, view_count) as u8);
+        let rows = (0..height).into_par_iter();
+        rows.flat_map_iter(|row| (0..width).map(move |column| of_pixel(column, row))).collect()
     }
 
     /// From the middle of a pixel; without cells, from where the maker's software takes its red stripe to be.

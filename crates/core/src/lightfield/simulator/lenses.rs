@@ -1,7 +1,7 @@
 //! Lenses that show each view in directions of its own, the same at all heights.
 
-use super::Eye;
 use super::lobe::{Blend, lobe};
+use super::{Eye, SeenView};
 use crate::image::RgbImage;
 use crate::lightfield::quilt::TileError;
 use crate::lightfield::{Lenticular, QuiltDisplay};
@@ -26,28 +26,28 @@ impl QuiltDisplay {
     /// Another number of views than of tiles, views of another size than a tile's.
     pub fn seen_from(&self, eye: &Eye, views: &[RgbImage]) -> Result<RgbImage, TileError> {
         self.check_views(views)?;
-        let count = self.view_count();
-        let tile = DVec2::from(self.tile_size_px().map(f64::from));
-        let screen_size_m = self.screen_size_m();
-        Ok(eye.picture(|column, row| {
-            let screen_m = eye.screen_m(screen_size_m, column, row);
-            let in_views = self.share_towards(eye, screen_m) * f64::from(count) - 0.5;
-            let at = (screen_m / DVec2::from(screen_size_m) * DVec2::new(1.0, -1.0) + 0.5) * tile;
-            let mut blend = Blend::default();
-            for near in [in_views.floor(), in_views.floor() + 1.0] {
-                let index = near.rem_euclid(f64::from(count)) as usize;
-                if let Some(rgb) = views[index].sample(at) {
-                    blend.add(rgb, lobe(in_views - near));
-                }
-            }
-            blend.rgb()
-        }))
+        Ok(eye.picture_of(&self.views_seen_from(eye), views))
     }
 
-    /// The share of the view cone in which an eye is from a place on the screen.
-    fn share_towards(&self, eye: &Eye, screen_m: DVec2) -> f64 {
-        let to_eye = (eye.position_m().x - screen_m.x) / eye.position_m().z;
-        self.share_of_camera(screen_m.x + to_eye * self.focal_distance_m)
+    /// Which views an eye sees in each column of its picture, and where in them it looks.
+    pub fn views_seen_from(&self, eye: &Eye) -> Vec<Vec<SeenView>> {
+        let count = f64::from(self.view_count());
+        let screen_size_m = self.screen_size_m();
+        eye.columns(screen_size_m, |x_m| {
+            let in_views = self.share_towards(eye, x_m) * count - 0.5;
+            let along = x_m / screen_size_m[0] + 0.5;
+            let seen = |near: f64| {
+                let (index, weight) = (near.rem_euclid(count) as usize, lobe(in_views - near));
+                (weight > 0.0).then_some(SeenView { index, weight, along, down: [0.0, 1.0] })
+            };
+            [in_views.floor(), in_views.floor() + 1.0].into_iter().filter_map(seen).collect()
+        })
+    }
+
+    /// The share of the view cone in which an eye is from a place so far to the right on the screen, metres.
+    fn share_towards(&self, eye: &Eye, x_m: f64) -> f64 {
+        let to_eye = (eye.position_m().x - x_m) / eye.position_m().z;
+        self.share_of_camera(x_m + to_eye * self.focal_distance_m)
     }
 }
 
@@ -77,7 +77,7 @@ impl Lenticular {
         let half_rows = half(covered_rows);
         Ok(eye.picture(|column, row| {
             let screen_m = eye.screen_m(screen_size_m, column, row);
-            let wanted = display.share_towards(eye, screen_m);
+            let wanted = display.share_towards(eye, screen_m.x);
             let at = DVec2::new(
                 (screen_m.x / screen_size_m[0] + 0.5) * columns,
                 (0.5 - screen_m.y / screen_size_m[1]) * rows,

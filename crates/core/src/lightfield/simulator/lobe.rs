@@ -20,8 +20,8 @@ pub(super) struct Blend {
     weight: [f64; 3],
 }
 
-/// Weight below which there is no light.
-const DARK: f64 = 1e-3;
+/// Weight in all up to which there is no light.
+pub const DARK: f64 = 1e-3;
 
 impl Blend {
     pub(super) fn add(&mut self, rgb: [f32; 3], weight: f64) {
