@@ -33,7 +33,7 @@ use wheatstone_io::Loaded;
     wheatstone simulate frame_*.png -o seen.png --display agus-2008 --eye 0.1,0,1\n\n\
     Frames are numbered from 0000. Each holds the images of several projectors below a header with their ids.")]
 pub(crate) struct ProjectorsArgs {
-    /// The PNG files to write: OUT_0000.png and so on.
+    /// The PNG files to write, numbered from 0000 before the extension.
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
 

@@ -88,39 +88,42 @@ fn dssim(bench: &Bench, a: &str, b: &str) -> f64 {
 #[test]
 fn the_viewer_sees_the_volume() {
     let bench = bench();
-    for (look, most) in [
-        (&["--tf", "ramp:0..1"][..], 0.02),
-        (&["--mode", "mip"], 0.02),
-        (&["--mode", "xray"], 0.02),
-        (&["--tf", "ramp:0..1", "--shading", "phong"], 0.02),
-        (&["--tf", "ramp:0..1", "--shading", "style:clay:glass"], 0.02),
-        (&["--tf", "ramp:0..1", "--boundaries", "0.2,20,1"], 0.02),
+    for look in [
+        &["--tf", "ramp:0..1"][..],
+        &["--mode", "mip"],
+        &["--mode", "xray"],
+        &["--tf", "ramp:0..1", "--shading", "phong"],
+        &["--tf", "ramp:0..1", "--shading", "style:clay:glass"],
+        &["--tf", "ramp:0..1", "--boundaries", "0.2,20,1"],
     ] {
         let turned = [look, &["--volume-size", "0.1", "--before-screen", "0.01", "--azimuth", "30"]].concat();
-        let report = projectors(&bench, "f.png", &turned);
+        let in_full = [&turned[..], &["--resolution", "full"]].concat();
+        let report = projectors(&bench, "f.png", &in_full);
         assert_eq!(report["outputs"], json!(["f_0000.png", "f_0001.png"]));
         simulate(&bench, "f", "seen.png", "0,0,0.6");
         let truth = ["quilt", "o.nrrd", "-o", "truth_qs1x1a1.33.png", "--backend", "cpu"];
         let run = bench.run(&[&truth[..], &AS_ONE_VIEW, &turned].concat());
         assert_eq!(run.code, 0, "{}", run.stderr);
         let found = dssim(&bench, "seen.png", "truth_qs1x1a1.33.png");
-        assert!(found < most, "{look:?}: {found}");
+        assert!(found < 0.02, "{look:?}: {found}");
         simulate(&bench, "f", "beside.png", "0.15,0,0.6");
         let moved = dssim(&bench, "beside.png", "truth_qs1x1a1.33.png");
-        assert!(moved > 2.0 * found, "{look:?}: {moved} and {found}");
+        assert!(moved > 3.0 * found, "{look:?}: {moved} and {found}");
     }
 }
 
 #[test]
 fn frames_have_the_ids_of_their_projectors_and_what_is_resolved_is_matched() {
     let bench = bench();
-    let deep = ["--tf", "ramp:0..1", "--volume-size", "0.3", "--sampling-factor", "2"];
+    let run = bench.run(&["phantom", "beetle", "--size", "64", "-o", "o.nrrd"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let deep = ["--tf", "viridis", "--volume-size", "0.2", "--skip", "none"];
     let matched = projectors(&bench, "m.png", &deep);
     let full = projectors(&bench, "f.png", &[&deep[..], &["--resolution", "full"]].concat());
     assert_eq!((&matched["resolution"], &full["resolution"]), (&json!("matched"), &json!("full")));
     assert_eq!((&matched["projectors"], &matched["frames"]), (&json!(12), &json!(2)));
-    let samples = |report: &Value| report["samples"].as_u64().unwrap();
-    assert!(samples(&matched) < samples(&full), "{matched} {full}");
+    let samples = |report: &Value| report["samples"].as_f64().unwrap();
+    assert!(samples(&matched) < 0.8 * samples(&full), "{matched} {full}");
     let (screen, behind) = (
         matched["resolved_m"]["screen"].as_f64().unwrap(),
         matched["resolved_m"]["behind"].as_f64().unwrap(),
@@ -130,7 +133,7 @@ fn frames_have_the_ids_of_their_projectors_and_what_is_resolved_is_matched() {
     simulate(&bench, "m", "matched.png", "0,0,0.6");
     simulate(&bench, "f", "full.png", "0,0,0.6");
     let apart = dssim(&bench, "matched.png", "full.png");
-    assert!(apart > 0.0 && apart < 0.05, "{apart}");
+    assert!(apart > 0.0 && apart < 0.1, "{apart}");
     let frame = image::open(bench.path("f_0001.png")).unwrap().into_rgb8();
     assert_eq!(frame.dimensions(), (200, 64));
     // Ten places: the second frame has projectors 110 and 111, then free places.
@@ -146,7 +149,7 @@ fn a_turntable_turns_the_volume_and_corrections_are_applied() {
     let outputs = turns["outputs"].as_array().unwrap();
     assert_eq!((outputs.len(), &outputs[3]), (8, &json!("t_0001_0001.png")));
     projectors(&bench, "a.png", &[&look[..], &["--azimuth", "90"]].concat());
-    assert_eq!(dssim(&bench, "a_0000.png", "t_0001_0000.png"), 0.0);
+    assert!(dssim(&bench, "a_0000.png", "t_0001_0000.png") < 1e-9);
 
     let table = json!([1.0, 0.0]);
     let inverted = json!({ "id": 101, "colors": { "red": table, "green": table, "blue": table } });
