@@ -4,7 +4,7 @@ use crate::support::{Bench, Run};
 use serde_json::{Value, json};
 
 /// Twelve projectors of 40 × 30 pixels, 4° apart, behind a screen of 0.2 × 0.15 m; the outermost two are seen in mirrors.
-fn array() -> Value {
+pub(crate) fn array() -> Value {
     let projector = |id: u32| {
         let (left_m, right_m) = if id == 0 || id == 11 { (0.1, -0.1) } else { (-0.1, 0.1) };
         let x_m = 2.0 * 0.5 * 2.0_f64.to_radians().tan() * (f64::from(id) - 5.5);

@@ -365,9 +365,7 @@ fn a_light_field_display_is_shown_as_it_is_sent_as_it_is_seen_and_as_its_panel_s
     let seen = as_picture(&middle(&whole, [side, side]));
     let eye = Eye::new(DVec3::new(0.07, 0.02, 0.6), [side, side]).unwrap();
     let expected = display.seen_from(&eye, &views).unwrap();
-    let apart = seen.rgb.iter().flatten().zip(expected.rgb.iter().flatten());
-    let furthest = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(furthest < 2.5 / 255.0, "{furthest}");
+    assert!(furthest(&seen, &expected) < 2.5 / 255.0, "{}", furthest(&seen, &expected));
 
     let panel = image::imageops::crop_imm(&picture(&bench, "panel.png"), 0, 0, 192, 192).to_image();
     let lenses = Lenticular::from_visual_json(SMALL_PANEL).unwrap();
@@ -376,6 +374,64 @@ fn a_light_field_display_is_shown_as_it_is_sent_as_it_is_seen_and_as_its_panel_s
     assert_eq!(picture(&bench, "panel.png"), picture(&bench, "again.png"));
     // Of a display without lenses there is no panel: what the eye sees is shown.
     assert!(lit(&as_picture(&picture(&bench, "projectors.png"))) > 5000);
+}
+
+/// Largest difference of a channel.
+fn furthest(a: &wheatstone_core::image::RgbImage, b: &wheatstone_core::image::RgbImage) -> f32 {
+    assert_eq!((a.width, a.height), (b.width, b.height));
+    a.rgb.iter().flatten().zip(b.rgb.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn displays_are_chosen_by_flags_and_an_eye_sees_projectors_as_it_should() {
+    use glam::DVec3;
+    use wheatstone_core::lightfield::ProjectorArray;
+    use wheatstone_core::lightfield::simulator::Eye;
+    if !needs_adapter() {
+        return;
+    }
+    let bench = Bench::new();
+    let write = |name: &str, text: &str| std::fs::write(bench.path(name), text).unwrap();
+    write("small.json", SMALL_DISPLAY);
+    write("visual.json", SMALL_PANEL);
+    let description = crate::projectors::array().to_string();
+    write("array.json", &description);
+    let view = |flags: &[&str], script: &str| {
+        write("s.jsonl", script);
+        let base = ["view", "sphere.nrrd", "--headless", "--size", "640x360", "--script", "s.jsonl"];
+        let run = bench.run(&[&base[..], flags].concat());
+        assert_eq!(run.code, 0, "{flags:?}: {}", run.stderr);
+    };
+    let saves = "{\"wait_for\": \"rest\"}\n{\"do\": {\"save\": \"v.json\"}}\n";
+    view(&["--display", "small.json", "--interlace", "visual.json"], saves);
+    let saved: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(bench.path("v.json")).unwrap()).unwrap();
+    assert_eq!(saved["stereo"]["arrangement"], "panel");
+    assert_eq!(saved["light_field"]["display"]["columns"], 3);
+    assert_eq!(saved["light_field"]["calibration"]["pitch"]["value"], 20);
+
+    let sees = r#"
+{"do": {"display_eye": [0.05, 0.03, 0.7]}}
+{"wait_for": "rest"}
+{"do": {"picture": "seen.png"}}
+{"wait_for": "rest"}
+{"do": {"arrangement": "quilt"}}
+{"wait_for": "rest"}
+{"do": {"picture": "images.png"}}
+{"wait_for": "rest"}
+"#;
+    view(&["--display", "array.json"], sees);
+    let array = ProjectorArray::from_json(&description).unwrap();
+    // Five beside each other, as in a frame.
+    let images = as_picture(&middle(&picture(&bench, "images.png"), [200, 90]));
+    let images: Vec<_> = (0..12).map(|n| images.cut([n % 5 * 40, n / 5 * 30], [40, 30])).collect();
+    assert!(images[0] != images[11] && images[3] != images[4]);
+    let whole = picture(&bench, "seen.png");
+    let size = [whole.width(), (f64::from(whole.width()) * 0.75).round() as u32];
+    let eye = Eye::new(DVec3::new(0.05, 0.03, 0.7), size).unwrap();
+    let (seen, expected) = (as_picture(&middle(&whole, size)), array.seen_from(&eye, &images).unwrap());
+    assert!(furthest(&seen, &expected) < 2.5 / 255.0, "{}", furthest(&seen, &expected));
+    assert!(expected.rgb.iter().filter(|rgb| rgb[0] > 0.25).count() > 2000);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::scene::{Scene, byte_window, display};
 use glam::{DAffine3, DVec3};
+use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::quilt::{Model, Sampling};
 use wheatstone_core::lightfield::simulator::Eye;
@@ -164,6 +165,28 @@ fn matched_resolution(phantom: Phantom) {
     let (of_full, of_matched) = (dssim(&full), dssim(&matched));
     assert!(of_samples < 0.65, "{phantom}: {of_samples} of the samples");
     assert!(of_matched - of_full <= 0.005, "{phantom}: {of_matched} instead of {of_full}");
+}
+
+#[test]
+fn a_volume_that_is_scaled_to_its_display_is_resolved_as_one_of_that_size() {
+    let volume = Phantom::Beetle.cube(64).unwrap();
+    let settings = Settings::new(volume.full_window(), soft());
+    let array = display(24, 2.4, SIZE);
+    let resolved = LevelOfDetail::Resolved(array.resolution());
+    let slabs = |side_m: f64, scale: f64| {
+        let scene = Scene::new(&volume, side_m, &settings);
+        let view = array.views(DAffine3::from_scale(DVec3::splat(scale)))[3];
+        resolved.slabs(&view, &scene.parameters, 4)
+    };
+    let (as_large, scaled) = (slabs(0.2, 1.0), slabs(1.0, 0.2));
+    assert!(as_large.len() >= 3 && as_large.len() == scaled.len(), "{as_large:?} {scaled:?}");
+    for (a, b) in as_large.iter().zip(&scaled) {
+        let ends = [(a.depths_m.start, b.depths_m.start), (a.depths_m.end, b.depths_m.end)];
+        assert!(
+            a.level == b.level && ends.iter().all(|(a, b)| a == b || (a - b).abs() < 1e-9),
+            "{a:?} {b:?}"
+        );
+    }
 }
 
 fn quilt_display() -> QuiltDisplay {
