@@ -5,7 +5,7 @@ use crate::groups::bind;
 use crate::pipeline::{KernelFiles, build};
 
 /// Invocations along x and y of every workgroup; along z there is one.
-const WORKGROUP_SIDE: u32 = 8;
+pub(crate) const WORKGROUP_SIDE: u32 = 8;
 
 /// A pipeline. Cheap to clone.
 #[derive(Debug, Clone)]

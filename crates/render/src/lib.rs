@@ -17,11 +17,13 @@ mod lit_spheres;
 pub mod live;
 #[cfg(test)]
 mod noop_device;
+mod pace;
 mod pacer;
 mod piece;
 mod pipeline;
 mod readback;
 mod renderer;
+mod rows;
 pub mod shader;
 pub mod skip;
 mod squares;
@@ -31,6 +33,7 @@ mod target;
 mod tile_pass;
 mod uniforms;
 mod volume;
+mod volume_upload;
 pub mod warp;
 
 pub use gpu::{AdapterDescription, Gpu, GpuError};
@@ -41,3 +44,4 @@ pub use renderer::{Prepared, Renderer, Sources};
 pub use stereo::{Form, LayerFormat, PairError, PairMethod, PairReport, Quality};
 pub use target::{LAYERS, Target};
 pub use volume::{GpuVolume, TexelFormat};
+pub use volume_upload::{Slab, VolumeUpload};

@@ -1,12 +1,12 @@
-//! Upload: voxels into a 3D texture, slab by slab.
+//! Volumes as 3D textures, and what their texels are.
 
 use crate::gpu::{Capabilities, Gpu, GpuError};
+use crate::readback::read_texture;
+use crate::volume_upload::{Slab, VolumeUpload};
 use half::f16;
+use std::time::Duration;
 use wheatstone_core::skip::RangeCodes;
 use wheatstone_core::volume::{Encoding, StorageKind, StoredVoxels, Volume, Window};
-
-/// Bytes of a slab: what is converted and staged at once.
-const SLAB_BYTES: usize = 16 << 20;
 
 /// How far rounding may carry a number interpolated between half floats of 16-bit numbers, those numbers' units: three f32
 /// interpolations, each off by at most 1½ ulp.
@@ -72,7 +72,7 @@ impl TexelFormat {
         }
     }
 
-    fn storage_kind(self) -> StorageKind {
+    pub(crate) fn storage_kind(self) -> StorageKind {
         match self {
             Self::R8Unorm | Self::R16FloatOf8Bit | Self::Rgba8UnormQuads => StorageKind::U8,
             Self::R16Unorm | Self::R16FloatOf16Bit => StorageKind::U16,
@@ -99,7 +99,7 @@ impl TexelFormat {
     }
 
     /// Texels of whole slices of `width` × `height` voxels.
-    fn texels(self, stored: &StoredVoxels, [width, height]: [usize; 2]) -> Vec<u8> {
+    pub(crate) fn texels(self, stored: &StoredVoxels, [width, height]: [usize; 2]) -> Vec<u8> {
         let halves = |numbers: &mut dyn Iterator<Item = f32>| {
             bytemuck::cast_slice(&numbers.map(f16::from_f32).collect::<Vec<f16>>()).to_vec()
         };
@@ -160,55 +160,44 @@ impl GpuVolume {
         format: TexelFormat,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Self, GpuError> {
-        let dims = volume.grid().dims();
-        check_size(gpu.capabilities(), dims, format)?;
-        let [width, height, depth] = dims;
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("volume"),
-            size: extent(dims),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D3,
-            format: format.wgpu(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        gpu.check()?;
-        let encoding = Encoding::new(volume, format.storage_kind());
-        let row_bytes = width * format.byte_size();
-        let slab_depth = (SLAB_BYTES / (row_bytes * height)).max(1);
-        for first_slice in (0..depth).step_by(slab_depth) {
-            let slices = slab_depth.min(depth - first_slice);
-            let voxels = first_slice * width * height..(first_slice + slices) * width * height;
-            gpu.queue.write_texture(
-                wgpu::TexelCopyTextureInfo {
-                    texture: &texture,
-                    mip_level: 0,
-                    origin: wgpu::Origin3d { x: 0, y: 0, z: first_slice as u32 },
-                    aspect: wgpu::TextureAspect::All,
-                },
-                &format.texels(&encoding.encode(volume.voxels(), voxels), [width, height]),
-                wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row_bytes as u32),
-                    rows_per_image: Some(height as u32),
-                },
-                extent([width, height, slices]),
-            );
-            gpu.queue.submit([]);
-            gpu.wait()?;
-            progress(first_slice + slices, depth);
+        let mut upload = VolumeUpload::begin(gpu, volume, format)?;
+        for slab in Slab::all_of(volume, format) {
+            upload.take(slab);
+            while !upload.is_whole() && !upload.wants_slab() {
+                upload.step(gpu, Duration::MAX)?;
+            }
+            let (done, all) = upload.slices();
+            progress(done, all);
         }
+        Ok(upload.finish())
+    }
+
+    /// What a texture holds once all texels of a volume are in it.
+    pub(crate) fn of_texture(texture: &wgpu::Texture, volume: &Volume, format: TexelFormat) -> Self {
+        let encoding = Encoding::new(volume, format.storage_kind());
         let (grid, (lo, hi)) = (volume.grid(), volume.range());
-        Ok(Self {
+        Self {
             texture: texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            dims,
+            dims: grid.dims(),
             spacing: (grid.spacing_mm() / grid.voxel_length_mm()).as_vec3().to_array(),
             range_codes: format.range_codes(volume),
             stored_range: (encoding.stored(hi) - encoding.stored(lo)) as f32,
             format,
             encoding,
-        })
+        }
+    }
+
+    /// Reads the texels back, slice by slice and row by row.
+    ///
+    /// # Errors
+    /// No memory, a lost or hung device.
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
+        let texture = self.texture.texture();
+        match self.format.byte_size() {
+            1 => read_texture(gpu, texture),
+            2 => Ok(bytemuck::cast_slice(&read_texture::<u16>(gpu, texture)?).to_vec()),
+            _ => Ok(bytemuck::cast_slice(&read_texture::<u32>(gpu, texture)?).to_vec()),
+        }
     }
 
     /// Voxels along each axis.

@@ -155,38 +155,29 @@ impl Casting {
 
     /// Casts a whole picture of what a state shows, whatever it takes.
     pub(crate) fn render(&mut self, gpu: &Gpu, state: &State, view: View) -> Result<Image, Failure> {
-        let structure = self.skipping()?.and_then(|skipping| skipping.at_rest(&state.look));
-        Ok(self.cast(gpu, state, structure, view)?.read(gpu)?.image)
+        let Self { renderer, scene } = self;
+        let Scene { grid, volume, skipping, .. } = shown(scene)?;
+        let structure = skipping.as_ref().and_then(|skipping| skipping.at_rest(&state.look));
+        Ok(cast(gpu, renderer, (grid, volume), (skipping.as_mut(), structure), state, view)?.read(gpu)?.image)
     }
 
     /// Casts a view of what a state shows, once by each skip map that it may get, so that kernels are there when they are wanted.
     pub(crate) fn rehearse(&mut self, gpu: &Gpu, state: &State, view: View) -> Result<(), Failure> {
-        let structures = self.skipping()?.map_or([None; 2], |skipping| {
-            [skipping.while_edited(&state.look), skipping.at_rest(&state.look)]
-        });
-        structures.into_iter().try_for_each(|structure| self.cast(gpu, state, structure, view).map(drop))
+        let Self { renderer, scene } = self;
+        let Scene { grid, volume, skipping, .. } = shown(scene)?;
+        cast_by_each_map(gpu, renderer, (grid, volume), skipping.as_mut(), state, view)
     }
 
-    fn skipping(&self) -> Result<Option<&Skipping>, Failure> {
-        let scene = self.scene.as_ref().ok_or_else(|| Failure::input("no volume is shown"))?;
-        Ok(scene.skipping.as_ref())
-    }
-
-    fn cast(
+    /// The same of a volume that is not to be shown.
+    pub(crate) fn rehearse_with(
         &mut self,
         gpu: &Gpu,
+        arrived: Arrived,
         state: &State,
-        structure: Option<Structure>,
         view: View,
-    ) -> Result<Target, Failure> {
-        let Self { renderer, scene: Some(Scene { grid, volume, skipping, .. }) } = self else {
-            return Err(Failure::input("no volume is shown"));
-        };
-        let prepared = prepare(gpu, renderer, (grid, volume), skipping.as_mut(), structure, state)?;
-        let mut targets = [Target::new(gpu, view.size)?];
-        renderer.render(gpu, &prepared, &[view], &mut targets)?;
-        let [target] = targets;
-        Ok(target)
+    ) -> Result<(), Failure> {
+        let Arrived { facts, volume, mut skipping, .. } = arrived;
+        cast_by_each_map(gpu, &mut self.renderer, (&facts.grid, &volume), skipping.as_mut(), state, view)
     }
 
     /// The newest whole picture.
@@ -256,6 +247,41 @@ fn keeps_layers(state: &State) -> bool {
     state.pace.warp == WarpName::Volumetric
         && state.look.mode == ModeName::Dvr
         && !state.stereo.arrangement.is_of_display()
+}
+
+fn shown(scene: &mut Option<Scene>) -> Result<&mut Scene, Failure> {
+    scene.as_mut().ok_or_else(|| Failure::input("no volume is shown"))
+}
+
+fn cast_by_each_map(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    volume: (&Grid, &GpuVolume),
+    mut skipping: Option<&mut Skipping>,
+    state: &State,
+    view: View,
+) -> Result<(), Failure> {
+    let structures = skipping
+        .as_ref()
+        .map_or([None; 2], |skipping| [skipping.while_edited(&state.look), skipping.at_rest(&state.look)]);
+    structures.into_iter().try_for_each(|structure| {
+        cast(gpu, renderer, volume, (skipping.as_deref_mut(), structure), state, view).map(drop)
+    })
+}
+
+fn cast(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    volume: (&Grid, &GpuVolume),
+    (skipping, structure): (Option<&mut Skipping>, Option<Structure>),
+    state: &State,
+    view: View,
+) -> Result<Target, Failure> {
+    let prepared = prepare(gpu, renderer, volume, skipping, structure, state)?;
+    let mut targets = [Target::new(gpu, view.size)?];
+    renderer.render(gpu, &prepared, &[view], &mut targets)?;
+    let [target] = targets;
+    Ok(target)
 }
 
 fn prepare(

@@ -189,7 +189,9 @@ impl Viewer {
 
     /// Shows a volume that has arrived, if it can be prepared.
     fn receive(&mut self, canvas: &Canvas) -> Result<(), Failure> {
-        let Some((arrived, showing)) = self.session.step(&self.gpu) else { return Ok(()) };
+        let Some((arrived, showing)) = self.session.step(&self.gpu, self.refresh_time()) else {
+            return Ok(());
+        };
         let received = views(&showing.state, canvas.size())
             .and_then(|aimed| self.casting.receive(&self.gpu, *arrived, &showing.state, aimed));
         match received {

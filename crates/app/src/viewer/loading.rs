@@ -3,13 +3,15 @@
 use super::facts::Facts;
 use super::job::{Job, Progress, Waker};
 use super::state::Look;
+use super::upload::Upload;
 use crate::failure::Failure;
 use crate::look::ModeName;
 use crate::shipped;
 use crate::volume_args::print_warnings;
 use anyhow::Context as _;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 use wheatstone_core::reference::Caster;
 use wheatstone_core::skip::{Skip, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::volume::{StorageKind, Volume};
@@ -28,9 +30,9 @@ pub(crate) struct Source {
 
 /// A volume in memory.
 pub(crate) struct Read {
-    volume: Volume,
-    facts: Facts,
-    held: Option<Caster>,
+    pub(super) volume: Volume,
+    pub(super) facts: Facts,
+    pub(super) held: Option<Caster>,
 }
 
 /// A volume on the device.
@@ -46,7 +48,7 @@ pub(crate) struct Arrived {
 /// What tells casts of a volume what to leap over.
 pub(crate) struct Skipping {
     pub(crate) builder: SkipBuilder,
-    plan: SkipPlan,
+    pub(super) plan: SkipPlan,
 }
 
 impl Skipping {
@@ -66,20 +68,29 @@ fn leaps_by_map(look: &Look) -> bool {
     !matches!(look.mode, ModeName::Mip | ModeName::Minip)
 }
 
-/// Two jobs, one after the other: a file is read while the device is still being opened.
-pub(crate) enum Loading {
-    Reading(Job<Read>),
-    Uploading(Job<Arrived>),
-}
-
 /// What a volume is loaded for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Destination {
     /// A window: the upload has a thread of its own.
     Window,
-    /// A headset, the device of which takes work from one thread only: the one that goes on with the load uploads. Voxels are held on
-    /// the host as well, for what hands point at.
+    /// A headset, the device of which takes work from one thread only: the one that goes on with the load uploads, in small steps. Voxels
+    /// are held on the host as well, for what hands point at.
     Headset,
+}
+
+/// What all loads of a session have in common.
+pub(crate) struct Loader {
+    wake: Waker,
+    destination: Destination,
+    /// They do not depend on the volume: the first makes them.
+    kernels: Arc<OnceLock<SkipKernels>>,
+}
+
+/// A file is read first, while the device may still be being opened.
+pub(crate) enum Loading {
+    Reading(Job<Read>),
+    Uploading(Job<Arrived>),
+    InSteps(Box<Upload>),
 }
 
 /// How a load goes on.
@@ -88,54 +99,83 @@ pub(crate) enum Step {
     Done(Box<Arrived>),
 }
 
-impl Loading {
+impl Loader {
+    pub(crate) fn new(wake: Waker, destination: Destination) -> Self {
+        Self { wake, destination, kernels: Arc::default() }
+    }
+
     /// Begins to read.
-    pub(crate) fn begin(source: Source, wake: Waker, destination: Destination) -> Result<Self, Failure> {
-        let job = Job::begin("reading", wake, move |teller| {
+    pub(crate) fn begin(&self, source: Source) -> Result<Loading, Failure> {
+        let destination = self.destination;
+        let job = Job::begin("reading", Arc::clone(&self.wake), move |teller| {
             let volume = read(&source)?;
             teller.tell("measuring", None);
             let facts = Facts::of(&volume, source.file.as_deref());
             let held = (destination == Destination::Headset).then(|| Caster::new(&volume));
             Ok(Read { volume, facts, held })
         });
-        Ok(Self::Reading(job.context("cannot begin to read")?))
+        Ok(Loading::Reading(job.context("cannot begin to read")?))
     }
 
+    /// Goes on as far as it can without waiting, or by a step of an upload that takes no longer than a time, as far as is known.
+    pub(crate) fn step(&self, loading: Loading, gpu: &Arc<Gpu>, time: Duration) -> Result<Step, Failure> {
+        Ok(match loading {
+            Loading::Reading(mut job) => Step::UnderWay(match (job.poll(), self.destination) {
+                (None, _) => Loading::Reading(job),
+                (Some(read), Destination::Window) => Loading::Uploading(self.upload(read?, gpu)?),
+                (Some(read), Destination::Headset) => {
+                    Loading::InSteps(Box::new(Upload::begin(gpu, read?, kept(&self.kernels, gpu)?)?))
+                }
+            }),
+            Loading::Uploading(mut job) => match job.poll() {
+                Some(arrived) => Step::Done(Box::new(arrived?)),
+                None => Step::UnderWay(Loading::Uploading(job)),
+            },
+            Loading::InSteps(upload) => upload.step(gpu, time)?,
+        })
+    }
+
+    /// Uploads a volume that is in memory, in one go.
+    pub(crate) fn upload_at_once(&self, volume: Volume, gpu: &Gpu) -> Result<Arrived, Failure> {
+        let facts = Facts::of(&volume, None);
+        upload(gpu, Read { volume, facts, held: None }, &self.kernels, &|_| ())
+    }
+
+    fn upload(&self, read: Read, gpu: &Arc<Gpu>) -> Result<Job<Arrived>, Failure> {
+        let (gpu, kernels) = (Arc::clone(gpu), Arc::clone(&self.kernels));
+        let job = Job::begin("uploading", Arc::clone(&self.wake), move |teller| {
+            upload(&gpu, read, &kernels, &|done| teller.tell("uploading", Some(done)))
+        });
+        Ok(job.context("cannot begin to upload")?)
+    }
+}
+
+impl Loading {
     /// How far it is.
     pub(crate) fn progress(&self) -> Progress {
         match self {
             Self::Reading(job) => job.progress(),
             Self::Uploading(job) => job.progress(),
+            Self::InSteps(upload) => upload.progress(),
         }
     }
+}
 
-    /// Goes on as far as it can without waiting, but for an upload in turn.
-    pub(crate) fn step(
-        self,
-        gpu: &Arc<Gpu>,
-        wake: &Waker,
-        destination: Destination,
-    ) -> Result<Step, Failure> {
-        Ok(match self {
-            Self::Reading(mut job) => match (job.poll(), destination) {
-                (None, _) => Step::UnderWay(Self::Reading(job)),
-                (Some(read), Destination::Window) => Step::UnderWay(Self::upload(read?, gpu, wake)?),
-                (Some(read), Destination::Headset) => Step::Done(Box::new(upload(gpu, read?, &|_| ())?)),
-            },
-            Self::Uploading(mut job) => match job.poll() {
-                Some(arrived) => Step::Done(Box::new(arrived?)),
-                None => Step::UnderWay(Self::Uploading(job)),
-            },
-        })
+/// The kernels of a device, made if they are not there yet.
+fn kept(kernels: &OnceLock<SkipKernels>, gpu: &Gpu) -> Result<SkipKernels, Failure> {
+    if let Some(kept) = kernels.get() {
+        return Ok(kept.clone());
     }
+    let made = SkipKernels::new(gpu)?;
+    Ok(kernels.get_or_init(|| made).clone())
+}
 
-    fn upload(read: Read, gpu: &Arc<Gpu>, wake: &Waker) -> Result<Self, Failure> {
-        let gpu = Arc::clone(gpu);
-        let job = Job::begin("uploading", Arc::clone(wake), move |teller| {
-            upload(&gpu, read, &|done| teller.tell("uploading", Some(done)))
-        });
-        Ok(Self::Uploading(job.context("cannot begin to upload")?))
-    }
+/// How a volume is held on a device, and cut into blocks if it is large enough to skip any.
+pub(super) fn planned(gpu: &Gpu, volume: &Volume) -> (TexelFormat, Option<SkipPlan>) {
+    let storage = StorageKind::lossless_for(volume);
+    let request = SkipRequest { skip: Skip::Auto, block_size: None };
+    let plan = request.plan(volume.grid().dims(), storage, gpu.capabilities().skip_host());
+    (TexelFormat::for_volume(volume, storage, gpu), plan)
 }
 
 fn read(source: &Source) -> Result<Volume, Failure> {
@@ -148,20 +188,21 @@ fn read(source: &Source) -> Result<Volume, Failure> {
     Ok(loaded.volume)
 }
 
-fn upload(gpu: &Gpu, read: Read, tell: &dyn Fn(f32)) -> Result<Arrived, Failure> {
+fn upload(
+    gpu: &Gpu,
+    read: Read,
+    kernels: &OnceLock<SkipKernels>,
+    tell: &dyn Fn(f32),
+) -> Result<Arrived, Failure> {
     let Read { volume, facts, held } = read;
-    let storage = StorageKind::lossless_for(&volume);
-    let format = TexelFormat::for_volume(&volume, storage, gpu);
-    let on_device =
-        GpuVolume::upload_as(gpu, &volume, format, &mut |done, all| tell(done as f32 / all as f32))?;
-    let request = SkipRequest { skip: Skip::Auto, block_size: None };
-    let plan = request.plan(on_device.dims(), storage, gpu.capabilities().skip_host());
+    let (format, plan) = planned(gpu, &volume);
+    let volume = GpuVolume::upload_as(gpu, &volume, format, &mut |done, all| tell(done as f32 / all as f32))?;
     let skipping = match plan {
         Some(plan) => {
-            let kernels = SkipKernels::new(gpu)?;
-            Some(Skipping { builder: SkipBuilder::new(gpu, &kernels, &on_device, plan.block_size)?, plan })
+            let builder = SkipBuilder::new(gpu, &kept(kernels, gpu)?, &volume, plan.block_size)?;
+            Some(Skipping { builder, plan })
         }
         None => None,
     };
-    Ok(Arrived { facts, volume: on_device, held, skipping })
+    Ok(Arrived { facts, volume, held, skipping })
 }

@@ -28,6 +28,7 @@ pub(crate) mod state;
 mod tiles;
 pub(crate) mod timings;
 pub(crate) mod ui;
+mod upload;
 pub(crate) mod window;
 
 pub(crate) use headless::run as run_headless;

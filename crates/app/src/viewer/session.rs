@@ -4,7 +4,7 @@ use super::capture::{Capture, Subject, Turntable};
 use super::command::Command;
 use super::facts::Facts;
 use super::job::{Progress, Waker};
-use super::loading::{Arrived, Destination, Loading, Source, Step};
+use super::loading::{Arrived, Destination, Loader, Loading, Source, Step};
 use super::notes::Notes;
 use super::state::{Clip, Edit, State, Transfer};
 use crate::failure::Failure;
@@ -13,6 +13,7 @@ use crate::text_file::read_text_file;
 use crate::transfer_spec;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 use wheatstone_core::transfer::Preset;
 use wheatstone_io::write_atomically;
 use wheatstone_render::Gpu;
@@ -28,8 +29,7 @@ pub(crate) struct Session {
     facts: Option<Facts>,
     source: Source,
     pending: Option<Pending>,
-    wake: Waker,
-    destination: Destination,
+    pub(crate) loader: Loader,
     pub(crate) notes: Notes,
     captures: Vec<Capture>,
     turntable: Option<Turntable>,
@@ -71,8 +71,7 @@ impl Session {
             facts: None,
             source: source.clone(),
             pending: None,
-            wake,
-            destination,
+            loader: Loader::new(wake, destination),
             notes: Notes::default(),
             captures: Vec::new(),
             turntable: None,
@@ -137,10 +136,11 @@ impl Session {
         }
     }
 
-    /// Goes on with a load; what has arrived is to be prepared, then shown or refused.
-    pub(crate) fn step(&mut self, gpu: &Arc<Gpu>) -> Option<(Box<Arrived>, Showing)> {
+    /// Goes on with a load, for a headset by a step that takes no longer than a time, as far as is known; what has arrived is to be
+    /// prepared, then shown or refused.
+    pub(crate) fn step(&mut self, gpu: &Arc<Gpu>, time: Duration) -> Option<(Box<Arrived>, Showing)> {
         let Pending { source, loading, view } = self.pending.take()?;
-        let step = loading.step(gpu, &self.wake, self.destination).and_then(|step| match step {
+        let step = self.loader.step(loading, gpu, time).and_then(|step| match step {
             Step::UnderWay(loading) => {
                 self.pending = Some(Pending { source, loading, view });
                 Ok(None)
@@ -293,7 +293,7 @@ impl Session {
     }
 
     fn load(&mut self, source: Source, view: Option<State>) -> Result<(), Failure> {
-        let loading = Loading::begin(source.clone(), Arc::clone(&self.wake), self.destination)?;
+        let loading = self.loader.begin(source.clone())?;
         self.pending = Some(Pending { source, loading, view });
         Ok(())
     }

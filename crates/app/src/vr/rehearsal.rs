@@ -19,7 +19,8 @@ use std::time::{Duration, Instant};
 use wheatstone_core::head::Pose;
 use wheatstone_core::headset::{Eye, Stand};
 use wheatstone_core::scene::Shading;
-use wheatstone_core::view::{Frustum, PixelRect};
+use wheatstone_core::view::{Frustum, PixelRect, View};
+use wheatstone_core::volume::{Grid, Volume, Voxels};
 
 /// Most time that the first picture is waited for: kernels are compiled by then.
 const FIRST_PICTURE: Duration = Duration::from_secs(2);
@@ -29,6 +30,10 @@ const PART: Duration = Duration::from_millis(20);
 
 /// Width and height of what nobody sees, pixels.
 const SMALL: [u32; 2] = [32, 32];
+
+/// Sides of volumes that nobody sees, voxels: enough for the skip maps of larger ones, a power of two and none, for software Vulkan compiles
+/// kernels for either.
+const OPENED: [usize; 2] = [128, 130];
 
 /// Between the eyes, metres.
 const EYE_DISTANCE_M: f64 = 0.063;
@@ -89,7 +94,26 @@ impl Room {
                 self.casting.rehearse(&self.gpu, &state, view)?;
             }
         }
+        if control == Control::HandsAndWindow {
+            self.rehearse_opening(view)?;
+        }
         Ok(self.gpu.wait()?)
+    }
+
+    /// Uploads and casts volumes of every precision, in each of which drivers compile kernels anew: a window opens other files.
+    fn rehearse_opening(&mut self, view: View) -> Result<(), Failure> {
+        let voxels: [fn(usize) -> Voxels; 3] = [
+            |count| Voxels::U8((0..count).map(|index| index as u8).collect()),
+            |count| Voxels::U16((0..count).map(|index| index as u16).collect()),
+            |count| Voxels::F32((0..count).map(|index| index as f32).collect()),
+        ];
+        for (side, voxels) in OPENED.into_iter().flat_map(|side| voxels.map(|voxels| (side, voxels))) {
+            let grid = Grid::centred([side; 3], [1.0; 3]).map_err(Failure::input)?;
+            let volume = Volume::new(grid, voxels(side.pow(3))).map_err(Failure::input)?;
+            let opened = self.session.loader.upload_at_once(volume, &self.gpu)?;
+            self.casting.rehearse_with(&self.gpu, opened, self.session.state(), view)?;
+        }
+        Ok(())
     }
 
     /// Draws a refresh that nobody sees, of eyes that have moved since the cast.

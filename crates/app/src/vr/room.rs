@@ -38,6 +38,12 @@ const KEPT_FREE: f64 = 0.15;
 /// Part of a refresh that casting gets even where drawing takes too long: whatever is shown would else stay as it is.
 const LEAST_CAST: f64 = 0.1;
 
+/// Part of the time for casting that a volume on its way gets.
+const LOAD: f64 = 0.5;
+
+/// How often a volume that everything waits for is looked after.
+const LOOK_AFTER: Duration = Duration::from_millis(1);
+
 /// Of the floor and the horizon.
 const FLOOR_RGB: [f32; 3] = [0.35, 0.4, 0.45];
 
@@ -71,14 +77,14 @@ pub(crate) struct Opening {
 /// Waits for the volume that a session begins with.
 pub(crate) fn load(session: &mut Session, gpu: &Arc<Gpu>) -> Result<(Box<Arrived>, Showing), Failure> {
     loop {
-        if let Some(arrived) = session.step(gpu) {
+        if let Some(arrived) = session.step(gpu, Duration::MAX) {
             return Ok(arrived);
         }
         if session.progress().is_none() {
             let reason = session.notes.failures().first().cloned();
             return Err(Failure::input(reason.unwrap_or_else(|| "no volume is to be shown".to_owned())));
         }
-        thread::sleep(NAP);
+        thread::sleep(LOOK_AFTER);
     }
 }
 
@@ -148,6 +154,8 @@ pub(crate) struct Room {
     has_floor: bool,
     refreshes: Option<u64>,
     aimed: Vec<View>,
+    /// A volume that is shown from the next refresh on.
+    arrived: Option<(Box<Arrived>, Showing)>,
     tick: Option<Tick>,
     /// Until when there is time to cast; none while the headset wants no pictures.
     cast_until: Option<Instant>,
@@ -188,6 +196,7 @@ impl Room {
             has_floor,
             refreshes,
             aimed: Vec::new(),
+            arrived: None,
             tick: None,
             cast_until: None,
             pictures: None,
@@ -280,11 +289,14 @@ impl Room {
         Ok(moment)
     }
 
-    /// Hands over as much casting as there is time for before the next refresh.
+    /// Takes a step of a load that is under way, and hands over as much casting as there is time for before the next refresh.
     fn cast(&mut self) -> Result<(), Failure> {
         let Some(until) = self.cast_until else { return Ok(()) };
-        let left = until.saturating_duration_since(Instant::now());
-        let cast = self.casting.refresh(&self.gpu, time_to_cast(left, self.report.period_s));
+        let left = || time_to_cast(until.saturating_duration_since(Instant::now()), self.report.period_s);
+        if self.arrived.is_none() {
+            self.arrived = self.session.step(&self.gpu, left().mul_f64(LOAD));
+        }
+        let cast = self.casting.refresh(&self.gpu, left());
         self.session.notes.survive(cast).map(drop)
     }
 
@@ -352,7 +364,7 @@ impl Room {
     fn receive(&mut self, eyes: &[Eye; 2], sizes: [[u32; 2]; 2]) -> Result<(), Failure> {
         let Some(hands) = &self.hands else { return Ok(()) };
         let stand = *hands.stand();
-        let Some((arrived, showing)) = self.session.step(&self.gpu) else { return Ok(()) };
+        let Some((arrived, showing)) = self.arrived.take() else { return Ok(()) };
         let views = self.cast_views(showing.state.stereo.method, eyes, &stand, sizes);
         match self.show(arrived, showing, views) {
             Ok(()) => {
@@ -567,11 +579,101 @@ mod tests {
     use super::*;
     use crate::viewer::Source;
     use crate::viewer::loading::Destination;
-    use crate::vr::Played;
-    use crate::vr::{Clock, DepthLayer, Replay};
+    use crate::vr::{Clock, DepthLayer, Played, Replay};
+    use std::path::{Path, PathBuf};
     use wheatstone_core::head::Display;
     use wheatstone_core::headset::Demonstration;
     use wheatstone_render::GpuError;
+
+    /// When another volume is opened.
+    const OPENED_AT: u64 = 5;
+
+    /// Opens another volume, and notes what every refresh from then on shows.
+    struct Opener {
+        file: PathBuf,
+        noted: Vec<Noted>,
+    }
+
+    struct Noted {
+        /// What a load is at, and the part that is done.
+        load: Option<(&'static str, Option<f32>)>,
+        volume: String,
+        shown: Option<PathBuf>,
+        has_pictures: bool,
+    }
+
+    impl Beside for Opener {
+        fn refreshed(&mut self, room: &mut Room) -> Result<(), Failure> {
+            if room.report.refreshes == OPENED_AT {
+                room.session.perform(&Command::Open(self.file.clone()));
+            }
+            if room.report.refreshes >= OPENED_AT {
+                let load = room.session.progress().map(|progress| (progress.what, progress.done));
+                if load.is_some_and(|(_, done)| done.is_none()) {
+                    // A recording is not over before a file is read.
+                    thread::sleep(NAP);
+                }
+                self.noted.push(Noted {
+                    load,
+                    volume: room.report.volume.clone(),
+                    shown: room.session.state().file.clone(),
+                    has_pictures: room.pictures.is_some(),
+                });
+            }
+            Ok(())
+        }
+
+        fn has_quit(&self) -> bool {
+            self.noted.iter().rev().take_while(|noted| noted.load.is_none()).count() > 5
+        }
+    }
+
+    fn write_volume(path: &Path, [x, y, z]: [usize; 3]) {
+        let header = format!(
+            "NRRD0004\ntype: uchar\ndimension: 3\nsizes: {x} {y} {z}\nencoding: raw\nendian: little\n\n"
+        );
+        let voxels = (0..x * y * z).map(|index| (index % 251) as u8);
+        std::fs::write(path, header.into_bytes().into_iter().chain(voxels).collect::<Vec<u8>>()).unwrap();
+    }
+
+    /// Shows `first.nrrd` of a folder without a headset, with something beside; nothing if tests without a device are asked for.
+    fn show_first(folder: &Path, beside: &mut dyn Beside) -> Option<Result<Report, Failure>> {
+        if std::env::var("WHEATSTONE_SKIP_GPU_TESTS").is_ok_and(|value| value == "1") {
+            return None;
+        }
+        let gpu = Gpu::open_software().or_else(|_| Gpu::open_best());
+        let gpu =
+            Arc::new(gpu.unwrap_or_else(|error| panic!("{error}; WHEATSTONE_SKIP_GPU_TESTS=1 skips this")));
+        let first = folder.join("first.nrrd");
+        write_volume(&first, [16; 3]);
+        let source = Source { file: Some(first), layout: None };
+        let mut session = Session::begin(source, Arc::new(|| ()), Destination::Headset).unwrap();
+        let arrived = load(&mut session, &gpu).unwrap();
+        let demonstration = Demonstration::new(&arrived.0.facts.grid, arrived.1.state.look.up.direction());
+        let stand = Some(*demonstration.stand());
+        let played = Played::Demonstration(Box::new(demonstration));
+        let mut headset =
+            Replay::new(gpu, played, Display::default(), Clock::Patient, [32; 2], DepthLayer::Without)
+                .unwrap();
+        let opening = Opening {
+            session,
+            arrived,
+            commands: Vec::new(),
+            control: Control::Hands,
+            scale: Scale::Human,
+            stand,
+            has_floor: false,
+            checks: None,
+            refreshes: None,
+        };
+        Some(run(&mut headset, opening, beside))
+    }
+
+    fn open_beside(folder: &Path, file: &str) -> Option<(Report, Vec<Noted>)> {
+        let mut opener = Opener { file: folder.join(file), noted: Vec::new() };
+        let report = show_first(folder, &mut opener)?.unwrap();
+        Some((report, opener.noted))
+    }
 
     /// Pulls the device out after some refreshes.
     struct Unplugging(u32);
@@ -592,35 +694,47 @@ mod tests {
 
     #[test]
     fn a_device_that_is_lost_ends_the_session_and_is_told() {
-        if std::env::var("WHEATSTONE_SKIP_GPU_TESTS").is_ok_and(|value| value == "1") {
-            return;
-        }
-        let gpu = Gpu::open_software().or_else(|_| Gpu::open_best());
-        let gpu =
-            Arc::new(gpu.unwrap_or_else(|error| panic!("{error}; WHEATSTONE_SKIP_GPU_TESTS=1 skips this")));
-        let source = Source { file: None, layout: None };
-        let mut session = Session::begin(source, Arc::new(|| ()), Destination::Headset).unwrap();
-        let arrived = load(&mut session, &gpu).unwrap();
-        let up = arrived.1.state.look.up.direction();
-        let demonstration = Demonstration::new(&arrived.0.facts.grid, up);
-        let played = Played::Demonstration(Box::new(demonstration));
-        let size = [32, 32];
-        let display = Display::default();
-        let mut headset =
-            Replay::new(gpu, played, display, Clock::Patient, size, DepthLayer::Without).unwrap();
-        let opening = Opening {
-            session,
-            arrived,
-            commands: Vec::new(),
-            control: Control::Hands,
-            scale: Scale::Human,
-            stand: None,
-            has_floor: true,
-            checks: None,
-            refreshes: None,
-        };
-        let lost = run(&mut headset, opening, &mut Unplugging(5));
+        let folder = tempfile::tempdir().unwrap();
+        let Some(lost) = show_first(folder.path(), &mut Unplugging(5)) else { return };
         assert!(matches!(lost, Err(Failure::Gpu(GpuError::Lost { .. }))), "{lost:?}");
+    }
+
+    #[test]
+    fn the_volume_before_is_shown_until_another_has_arrived_in_steps() {
+        let folder = tempfile::tempdir().unwrap();
+        write_volume(&folder.path().join("second.nrrd"), [128, 128, 48]);
+        let Some((report, noted)) = open_beside(folder.path(), "second.nrrd") else { return };
+        assert_eq!((&*report.volume, &report.failures), ("second.nrrd", &Vec::new()));
+        let arrived = noted.iter().position(|noted| noted.volume == "second.nrrd").unwrap();
+        for noted in &noted[..arrived] {
+            assert_eq!(noted.volume, "first.nrrd");
+            assert!(noted.has_pictures && noted.shown.as_ref().unwrap().ends_with("first.nrrd"));
+        }
+        for noted in &noted[arrived..] {
+            assert_eq!((&*noted.volume, noted.load), ("second.nrrd", None));
+            assert!(noted.has_pictures && noted.shown.as_ref().unwrap().ends_with("second.nrrd"));
+        }
+        // A step is at most four times as large as those before, and the first is small.
+        for what in ["uploading", "looking for empty space"] {
+            let done = |noted: &Noted| noted.load.filter(|load| load.0 == what).and_then(|load| load.1);
+            let done: Vec<f32> = noted.iter().filter_map(done).collect();
+            assert!(done.len() >= 4, "{what} in {} refreshes: {done:?}", done.len());
+            assert!(done.is_sorted() && done[0] == 0.0, "{what}: {done:?}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_no_volume_leaves_the_one_before() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("bad.nrrd"), "no volume").unwrap();
+        let Some((report, noted)) = open_beside(folder.path(), "bad.nrrd") else { return };
+        assert_eq!(report.volume, "first.nrrd");
+        assert!(
+            report.failures.len() == 1 && report.failures[0].contains("bad.nrrd"),
+            "{:?}",
+            report.failures
+        );
+        assert!(noted.iter().all(|noted| noted.volume == "first.nrrd" && noted.has_pictures));
     }
 
     #[test]

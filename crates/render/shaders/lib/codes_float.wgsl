@@ -30,8 +30,8 @@ fn code_at_least(x: f32) -> u32 {
 
 // Floats are rounded outward.
 fn codes_of(lo: f32, hi: f32) -> vec2u {
-    // All voxels are equal: every code is that number.
-    if uniforms.stored_per_code <= 0.0 {
+    // All voxels are equal: every code is that number. Were the uniform alone to decide, Mesa 22 would compile the kernel anew for each part.
+    if lo >= hi && uniforms.stored_per_code <= 0.0 {
         return vec2u(0u);
     }
     let widened = select(0.0, uniforms.rounding, lo < hi);

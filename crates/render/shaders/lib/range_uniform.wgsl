@@ -1,11 +1,11 @@
-// Mirror of `skip::block_ranges::RangeUniform`.
+// Mirror of `skip::range_search::RangeUniform`.
 
 struct RangeUniform {
     // Voxels along each side of a block.
     block_size: vec3u,
-    // First layer of blocks of the slab.
+    // First layer of blocks of the part.
     first_layer: u32,
-    // Blocks along each axis; layers of the slab only.
+    // Blocks along each axis; rows and layers of the part only.
     blocks: vec3u,
     // The last code.
     last_code: u32,
@@ -19,6 +19,8 @@ struct RangeUniform {
     largest_stored: f32,
     // How far rounding may carry an interpolated number out of the interval of its voxels, stored units.
     rounding: f32,
+    // First row of blocks of the part, in each of its layers.
+    first_row: u32,
 }
 
 @group(0) @binding(0) var<uniform> uniforms: RangeUniform;

@@ -12,7 +12,7 @@ fn find_ranges(@builtin(global_invocation_id) id: vec3u) {
     if any(id >= uniforms.blocks) {
         return;
     }
-    let block = id + vec3u(0u, 0u, uniforms.first_layer);
+    let block = id + vec3u(0u, uniforms.first_row, uniforms.first_layer);
     let first = max(block * uniforms.block_size, vec3u(1u)) - 1u;
     let end = min((block + 1u) * uniforms.block_size + 1u, textureDimensions(volume));
     var lo = textureLoad(volume, first, 0).x;

@@ -48,14 +48,17 @@ impl SkipBuilder {
         volume: &GpuVolume,
         block_size: BlockSize,
     ) -> Result<Self, GpuError> {
-        let values = GpuBlockRanges::of_values(gpu, kernels, volume, block_size)?;
-        Ok(Self {
-            kernels: kernels.clone(),
-            encoding: volume.encoding(),
-            values,
-            gradients: None,
-            passes: None,
-        })
+        Ok(Self::of_values(kernels, volume, GpuBlockRanges::of_values(gpu, kernels, volume, block_size)?))
+    }
+
+    /// With the ranges of a volume's values, which have been found already.
+    ///
+    /// # Panics
+    /// If the ranges are those of a volume of other dimensions.
+    pub fn of_values(kernels: &SkipKernels, volume: &GpuVolume, values: GpuBlockRanges) -> Self {
+        let grid = BlockGrid::new(volume.dims, values.grid().block_size());
+        assert_eq!(&grid, values.grid(), "the ranges are the volume's");
+        Self { kernels: kernels.clone(), encoding: volume.encoding(), values, gradients: None, passes: None }
     }
 
     /// Finds the ranges of a volume's values and of its gradient magnitudes.
@@ -110,6 +113,15 @@ impl SkipBuilder {
         let distances = DistancePass::new(gpu, &self.kernels, layout)?;
         let occupancy = OccupancyPass::new(gpu, &self.kernels, &self.values, distances.field())?;
         Ok(Passes { occupancy, distances })
+    }
+
+    /// Makes what maps of a structure are worked out in, if it is not there yet: else the first map does.
+    ///
+    /// # Errors
+    /// More blocks than the device can hold, no memory, a lost device.
+    pub fn make_room(&mut self, gpu: &Gpu, structure: Structure) -> Result<(), GpuError> {
+        self.passes = Some(self.take_passes(gpu, structure)?);
+        Ok(())
     }
 
     /// A new map for some settings. The work is submitted, not waited for.

@@ -11,14 +11,16 @@ mod distance;
 mod field;
 mod kernels;
 mod occupancy;
+mod range_search;
 mod skip_map;
 mod table;
 
 pub use baseline::DmBaseline;
 pub use block_ranges::GpuBlockRanges;
-pub(crate) use block_ranges::VoxelTexture;
 pub use builder::SkipBuilder;
 pub use kernels::SkipKernels;
+pub use range_search::RangeSearch;
+pub(crate) use range_search::VoxelTexture;
 pub use skip_map::GpuSkipMap;
 pub use wheatstone_core::skip::Structure;
 
@@ -42,8 +44,8 @@ pub(crate) fn kernel_files() -> Vec<crate::pipeline::KernelFiles<'static>> {
 #[cfg(test)]
 mod tests {
     use super::baseline::VoxelUniform;
-    use super::block_ranges::RangeUniform;
     use super::distance::SweepUniform;
+    use super::range_search::RangeUniform;
     use crate::shader::assert_layout;
 
     #[test]
@@ -62,6 +64,7 @@ mod tests {
                 stored_at_zero,
                 largest_stored,
                 rounding,
+                first_row,
             ]
         );
     }

@@ -2,6 +2,7 @@
 
 use crate::device::on_device;
 use crate::scene::{placement, storage_kind};
+use std::time::Duration;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::gradient_map::{GradientDepth, GradientMap};
 use wheatstone_core::scene::{GradientMethod, Mode, Settings};
@@ -10,7 +11,7 @@ use wheatstone_core::skip::{
 };
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::volume::{Encoding, Grid, StoredVoxels, Volume, VoxelType, Voxels};
-use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, SkipBuilder, SkipKernels};
+use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, RangeSearch, SkipBuilder, SkipKernels};
 use wheatstone_render::{Gpu, GpuError, GpuGradientMap, GpuVolume, TexelFormat};
 
 const STRUCTURES: [Structure; 3] = [Structure::Occupancy, Structure::Distance, Structure::Anisotropic];
@@ -122,6 +123,39 @@ fn ranges_of_values_are_those_of_the_reference() {
                         "{dims:?} {sides:?} {format:?}"
                     );
                 }
+            }
+        }
+    });
+}
+
+#[test]
+fn ranges_that_are_found_in_steps_are_those_of_one_go() {
+    on_device(|gpu, _| {
+        let kernels = SkipKernels::new(gpu).unwrap();
+        for (dims, sides) in SIZES {
+            let block_size = BlockSize::new(sides).unwrap();
+            let volume =
+                upload(gpu, &sparse_volume(dims, VoxelType::U8, 0.2, 5), TexelFormat::R16FloatOf8Bit);
+            let whole = GpuBlockRanges::of_values(gpu, &kernels, &volume, block_size).unwrap();
+            for time in [Duration::ZERO, Duration::from_micros(500)] {
+                let mut search = RangeSearch::of_values(gpu, &kernels, &volume, block_size).unwrap();
+                let [_, height, depth] = whole.grid().dims();
+                assert_eq!(search.rows(), (0, height * depth));
+                // A step goes through eight rows at least.
+                let most_steps = height.div_ceil(8) * depth;
+                let mut steps = 0;
+                while !search.is_whole() {
+                    search.step(gpu, time).unwrap();
+                    steps += 1;
+                    assert!(steps <= most_steps, "a step that did nothing");
+                }
+                let is_small = height <= 8;
+                assert!(
+                    time > Duration::ZERO || is_small || steps == most_steps,
+                    "{steps} of {most_steps} steps"
+                );
+                let found = search.finish();
+                assert!(found.read(gpu).unwrap() == whole.read(gpu).unwrap(), "{dims:?} {sides:?} {time:?}");
             }
         }
     });

@@ -3,11 +3,13 @@
 use crate::device::on_device;
 use crate::scene::*;
 use glam::DVec3;
+use std::time::Duration;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::scene::{Mode, Settings};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
+use wheatstone_core::volume::{Encoding, StoredVoxels};
 use wheatstone_core::volume::{Grid, Volume, Voxels};
-use wheatstone_render::{GpuVolume, Sources, TexelFormat};
+use wheatstone_render::{Gpu, GpuVolume, Slab, Sources, TexelFormat, VolumeUpload};
 
 /// 300×300 voxels of 16 bits are 180,000 bytes, so that a slab of 16 MiB holds 93 slices and this volume needs two.
 const DIMS: [usize; 3] = [300, 300, 110];
@@ -62,30 +64,115 @@ fn slabs_join_without_a_seam_and_progress_reaches_the_end() {
     });
 }
 
+/// All but quads, of which a texel is no voxel.
+const FORMATS: [TexelFormat; 5] = [
+    TexelFormat::R8Unorm,
+    TexelFormat::R16FloatOf8Bit,
+    TexelFormat::R16Unorm,
+    TexelFormat::R16FloatOf16Bit,
+    TexelFormat::R32Float,
+];
+
+fn is_offered(gpu: &Gpu, format: TexelFormat) -> bool {
+    match format {
+        TexelFormat::R16Unorm => gpu.capabilities().has_16bit_norm,
+        TexelFormat::R32Float => gpu.capabilities().has_f32_filtering,
+        _ => true,
+    }
+}
+
+/// Voxels that are all but regular.
+fn noise(dims: [usize; 3]) -> Volume {
+    let count = dims.iter().product::<usize>();
+    let voxels = Voxels::U16((0..count).map(|i| (i * i * 97 % 65_521) as u16).collect());
+    Volume::new(Grid::centred(dims, [1.0; 3]).unwrap(), voxels).unwrap()
+}
+
+/// Uploads with the same time for each step; the volume, and the steps that it took.
+fn stepped(gpu: &Gpu, volume: &Volume, format: TexelFormat, time: Duration) -> (GpuVolume, usize) {
+    let mut upload = VolumeUpload::begin(gpu, volume, format).unwrap();
+    let mut slabs = Slab::all_of(volume, format);
+    let (mut steps, mut slices) = (0, 0);
+    while !upload.is_whole() {
+        if upload.wants_slab() {
+            upload.take(slabs.next().unwrap());
+        }
+        upload.step(gpu, time).unwrap();
+        steps += 1;
+        assert!((slices..=volume.grid().dims()[2]).contains(&upload.slices().0));
+        slices = upload.slices().0;
+    }
+    assert!(!upload.wants_slab() && slabs.next().is_none());
+    (upload.finish(), steps)
+}
+
+#[test]
+fn an_upload_in_steps_is_the_upload_in_one_go() {
+    on_device(|gpu, _| {
+        let all = FORMATS.into_iter().chain([TexelFormat::Rgba8UnormQuads]);
+        for format in all.filter(|&format| is_offered(gpu, format)) {
+            // The last has slices of more bytes than a first step.
+            for dims in [[1, 1, 1], [1, 5, 3], [33, 17, 1], [257, 3, 2], [7, 300, 9], [301, 299, 5]] {
+                let volume = noise(dims);
+                let whole = GpuVolume::upload_as(gpu, &volume, format, &mut |_, _| {}).unwrap();
+                let texels = whole.read(gpu).unwrap();
+                assert_eq!(texels.len(), whole.byte_size() as usize);
+                for time in [Duration::ZERO, Duration::from_micros(300), Duration::MAX] {
+                    let (found, _) = stepped(gpu, &volume, format, time);
+                    assert!(found.read(gpu).unwrap() == texels, "{dims:?} {format:?} {time:?}");
+                    assert_eq!((found.dims(), found.format()), (whole.dims(), whole.format()));
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn texels_are_the_stored_voxels() {
+    on_device(|gpu, _| {
+        let volume = noise([301, 9, 7]);
+        let count = volume.grid().voxel_count();
+        let stored = |kind| Encoding::new(&volume, kind).encode(volume.voxels(), 0..count);
+        for format in FORMATS.into_iter().filter(|&format| is_offered(gpu, format)) {
+            let expected: Vec<u8> = match (format, stored(storage_kind(format))) {
+                (TexelFormat::R8Unorm, StoredVoxels::U8(v)) => v,
+                (TexelFormat::R16Unorm, StoredVoxels::U16(v)) => {
+                    v.into_iter().flat_map(u16::to_ne_bytes).collect()
+                }
+                (TexelFormat::R32Float, StoredVoxels::F32(v)) => {
+                    v.into_iter().flat_map(f32::to_ne_bytes).collect()
+                }
+                _ => continue,
+            };
+            let (found, _) = stepped(gpu, &volume, format, Duration::ZERO);
+            assert!(found.read(gpu).unwrap() == expected, "{format:?}");
+        }
+    });
+}
+
+#[test]
+fn steps_without_time_are_as_small_as_can_be() {
+    on_device(|gpu, _| {
+        // Rows of 1,000 bytes. Of the first two steps nobody knows what they take.
+        let dims = [1000, 40, 9];
+        let voxels = Voxels::U8((0..dims.iter().product()).map(|i: usize| i as u8).collect());
+        let volume = Volume::new(Grid::centred(dims, [1.0; 3]).unwrap(), voxels).unwrap();
+        let (_, steps) = stepped(gpu, &volume, TexelFormat::R8Unorm, Duration::ZERO);
+        let (_, in_one_go) = stepped(gpu, &volume, TexelFormat::R8Unorm, Duration::MAX);
+        assert!(steps > 9 * 40 - 2 * 80, "{steps} steps for {} rows", 9 * 40);
+        assert!(in_one_go < 10, "{in_one_go} steps for so little");
+    });
+}
+
 #[test]
 fn every_format_takes_rows_of_any_length() {
     on_device(|gpu, renderer| {
-        let formats = [
-            TexelFormat::R8Unorm,
-            TexelFormat::R16FloatOf8Bit,
-            TexelFormat::R16Unorm,
-            TexelFormat::R16FloatOf16Bit,
-            TexelFormat::R32Float,
-        ];
         // Rows of 1, 3 and 257 voxels fill no multiple of 4 or 256 bytes.
         for dims in [[1, 5, 3], [3, 7, 2], [257, 3, 2]] {
             let count = dims.iter().product::<usize>();
             let voxels = Voxels::U8((0..count).map(|i| (i * 97 % 256) as u8).collect());
             let volume = Volume::new(Grid::centred(dims, [1.0; 3]).unwrap(), voxels).unwrap();
-            for format in formats {
-                let is_offered = match format {
-                    TexelFormat::R16Unorm => gpu.capabilities().has_16bit_norm,
-                    TexelFormat::R32Float => gpu.capabilities().has_f32_filtering,
-                    _ => true,
-                };
-                if !is_offered {
-                    continue;
-                }
+            for format in FORMATS.into_iter().filter(|&format| is_offered(gpu, format)) {
                 let mut last = (0, 0);
                 GpuVolume::upload_as(gpu, &volume, format, &mut |done, total| last = (done, total)).unwrap();
                 assert_eq!(last, (dims[2], dims[2]), "{dims:?} {format:?}");
