@@ -371,7 +371,7 @@ impl Room {
                 (self.stand, self.hands) = (Some(stand), None);
                 Ok(())
             }
-            Err(Failure::Gpu(error)) => Err(error.into()),
+            Err(failure) if failure.is_end_of_device() => Err(failure),
             Err(failure) => {
                 self.session.refuse(&failure);
                 Ok(())
