@@ -366,6 +366,23 @@ fn blend_mode(runtime: &Runtime) -> Result<xr::EnvironmentBlendMode, XrError> {
         .instance
         .enumerate_environment_blend_modes(runtime.system, STEREO)
         .called("xrEnumerateEnvironmentBlendModes")?;
+    Ok(opaque_or_first(&offered))
+}
+
+fn opaque_or_first(offered: &[xr::EnvironmentBlendMode]) -> xr::EnvironmentBlendMode {
     let opaque = xr::EnvironmentBlendMode::OPAQUE;
-    Ok(offered.iter().copied().find(|mode| *mode == opaque).or(offered.first().copied()).unwrap_or(opaque))
+    if offered.contains(&opaque) { opaque } else { offered.first().copied().unwrap_or(opaque) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_room_is_seen_only_where_nothing_else_is_offered() {
+        use xr::EnvironmentBlendMode as Mode;
+        assert_eq!(opaque_or_first(&[Mode::ALPHA_BLEND, Mode::OPAQUE]), Mode::OPAQUE);
+        assert_eq!(opaque_or_first(&[Mode::ALPHA_BLEND, Mode::ADDITIVE]), Mode::ALPHA_BLEND);
+        assert_eq!(opaque_or_first(&[]), Mode::OPAQUE);
+    }
 }

@@ -5,12 +5,14 @@ use super::vr::{
     read_recording,
 };
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::{file_in, print, print_json};
 use crate::spec;
 use crate::viewer::Source;
 use crate::viewer::command::Command;
 use crate::viewer::state::{Edit, WarpName};
-use crate::vr::{Beside, Connected, Control, Guided, OpenXr, Opening, Replay, Report, Room, run as show};
+use crate::vr::{
+    Beside, Checking, Connected, Control, Guided, OpenXr, Opening, Replay, Report, Room, run as show,
+};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -85,6 +87,7 @@ impl Beside for Nothing {
 
 /// Runs the command.
 pub(crate) fn run(args: &VrBenchArgs) -> Result<(), Failure> {
+    args.pictures.check(args.headset)?;
     let mut reports = Vec::new();
     for volume in &args.volumes {
         for &warp in &args.warps {
@@ -116,7 +119,10 @@ impl VrBenchArgs {
         let mut commands: Vec<Command> = vec![Edit::Warp(warp).into(), Edit::Shading(self.shading).into()];
         commands.extend(self.pictures.commands()?);
         commands.extend(self.tf.clone().map(Command::Preset));
-        let checks = self.pictures.check.checking(Some(CHECK_EVERY));
+        let checks = self.pictures.check.checking(Some(CHECK_EVERY)).map(|checking| {
+            let row = format!("{}_{}", volume.file_stem().unwrap_or_default().display(), warp.name());
+            Checking { pictures: checking.pictures.map(|folder| file_in(&folder, &row)), ..checking }
+        });
         let opening = |(session, arrived), stand| Opening {
             session,
             arrived,
@@ -131,7 +137,7 @@ impl VrBenchArgs {
         match self.headset {
             HeadsetName::None => {
                 let gpu = Arc::new(Gpu::open_best()?);
-                let loaded = open(source, &gpu)?;
+                let loaded = open(source, self.tf.as_deref(), &gpu)?;
                 let (played, stand) = played(recording, &loaded.1);
                 let display = Display::new(self.refresh_hz).map_err(Failure::input)?;
                 let mut headset = Replay::new(
@@ -147,7 +153,7 @@ impl VrBenchArgs {
             HeadsetName::Openxr => {
                 check_readable(Some(volume))?;
                 let connected = Connected::connect()?;
-                let loaded = open(source, connected.gpu())?;
+                let loaded = open(source, self.tf.as_deref(), connected.gpu())?;
                 let (played, stand) = played(recording, &loaded.1);
                 let session = OpenXr::begin(connected, self.pictures.of_pictures(checks.as_ref()))?;
                 let mut headset = Guided::new(session, played);

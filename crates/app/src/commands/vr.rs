@@ -137,6 +137,19 @@ impl PicturesArgs {
         Ok(layers.into_iter().chain(self.eye_method.map(|method| Edit::EyeMethod(method).into())))
     }
 
+    /// Refuses what would be without effect.
+    pub(super) fn check(&self, headset: HeadsetName) -> Result<(), Failure> {
+        match headset {
+            HeadsetName::Openxr if self.patient => {
+                Err(Failure::input("--patient needs --headset none: a headset waits for nobody"))
+            }
+            HeadsetName::None if self.image_scale.is_some() => {
+                Err(Failure::input("--image-scale needs --headset openxr: nothing is recommended without"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// When refreshes come without a headset.
     pub(super) fn clock(&self) -> Clock {
         if self.patient { Clock::Patient } else { Clock::Real }
@@ -194,6 +207,8 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let mut commands: Vec<Command> = vec![Edit::Warp(args.warp).into()];
     commands.extend(args.pictures.commands()?);
     commands.extend(args.tf.clone().map(Command::Preset));
+    let tf = args.tf.as_deref();
+    args.pictures.check(args.headset)?;
     let record = args.record.as_deref().map(Record::begin).transpose()?;
     let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
     let recording = args.replay.as_deref().map(read_recording).transpose()?;
@@ -213,7 +228,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let shown = match args.headset {
         HeadsetName::None => {
             let gpu = Arc::new(Gpu::open_best()?);
-            let loaded = open(source, &gpu)?;
+            let loaded = open(source, tf, &gpu)?;
             let (played, stand) = played(recording, &loaded.1);
             let display = Display::default();
             let size = spec::picture_size(EYE).map_err(Failure::input)?;
@@ -225,7 +240,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         HeadsetName::Openxr => {
             check_readable(args.file.as_deref())?;
             let connected = Connected::connect()?;
-            let loaded = open(source, connected.gpu())?;
+            let loaded = open(source, tf, connected.gpu())?;
             if !args.no_mirror {
                 company.mirror = mirror(&connected);
             }
@@ -263,11 +278,19 @@ fn mirror(connected: &Connected) -> Option<Mirror> {
     }
 }
 
-/// Reads and uploads what is to be shown at first, before a session begins that has no time for it.
-pub(super) fn open(source: Source, gpu: &Arc<Gpu>) -> Result<(Session, (Box<Arrived>, Showing)), Failure> {
+/// Reads and uploads what is to be shown at first, before a session begins that has no time for it. A transfer function that is asked
+/// for has to suit it.
+pub(super) fn open(
+    source: Source,
+    tf: Option<&str>,
+    gpu: &Arc<Gpu>,
+) -> Result<(Session, (Box<Arrived>, Showing)), Failure> {
     let _spinner = Bar::spinner("reading the volume");
     let mut session = Session::begin(source, Arc::new(|| ()), Destination::Headset)?;
     let arrived = load(&mut session, gpu)?;
+    if let Some(tf) = tf {
+        arrived.0.facts.transfer(&transfer_spec::parse(tf).map_err(Failure::input)?)?;
+    }
     Ok((session, arrived))
 }
 

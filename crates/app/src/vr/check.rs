@@ -39,8 +39,8 @@ pub(crate) struct Checked {
     pub(crate) side: Side,
     /// Of the whole image.
     pub(crate) dssim: f64,
-    /// Of the windows that touch the volume.
-    pub(crate) dssim_covered: f64,
+    /// Of the windows that touch the volume; none where it is not to be seen.
+    pub(crate) dssim_covered: Option<f64>,
     /// Whether what was shown was cast from elsewhere.
     pub(crate) moves: bool,
     /// Pixels along a side of the picture that was warped, as a part of full resolution.
@@ -123,6 +123,11 @@ impl Checks {
         Ok(())
     }
 
+    /// Another volume is shown from now on: what was kept of the one before cannot be compared any more.
+    pub(crate) fn forget(&mut self) {
+        self.kept.clear();
+    }
+
     /// Draws what should have been seen, and writes what was.
     pub(crate) fn finish(self, gpu: &Gpu, casting: &mut Casting) -> Result<Vec<Checked>, Failure> {
         let Some(first) = self.kept.first() else { return Ok(Vec::new()) };
@@ -136,9 +141,13 @@ impl Checks {
                 write_png(&file_in(folder, &name), &shown, Bits::Eight)?;
             }
             let map = SsimMap::new(&shown, &should).map_err(Failure::input)?;
-            let covered = map.mean_where(&covered(&truth, &seen.visible)).map_err(Failure::input)?;
-            let (dssim, dssim_covered) = (dssim(map.mean()), dssim(covered));
-            Ok(Checked { refresh, side, dssim, dssim_covered, moves, resolution: seen.resolution })
+            let covered = covered(&truth, &seen.visible);
+            let dssim_covered = match covered.contains(&true) {
+                true => Some(dssim(map.mean_where(&covered).map_err(Failure::input)?)),
+                false => None,
+            };
+            let (dssim, resolution) = (dssim(map.mean()), seen.resolution);
+            Ok(Checked { refresh, side, dssim, dssim_covered, moves, resolution })
         };
         self.kept.into_iter().map(compare_one).collect()
     }

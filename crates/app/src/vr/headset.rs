@@ -32,6 +32,9 @@ pub(crate) trait Headset {
     /// The floor's height in the world, metres, where it is known.
     fn floor_y_m(&self) -> Option<f64>;
 
+    /// Whether refreshes wait for what is cast between them, as if no time passed meanwhile.
+    fn is_patient(&self) -> bool;
+
     /// Waits for the next refresh, lets its pictures be drawn, and shows them. An error of what draws comes back as it is.
     fn refresh(
         &mut self,

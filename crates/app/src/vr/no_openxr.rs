@@ -69,6 +69,10 @@ impl Headset for OpenXr {
         match self.0 {}
     }
 
+    fn is_patient(&self) -> bool {
+        match self.0 {}
+    }
+
     fn refresh(
         &mut self,
         _: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,

@@ -144,6 +144,10 @@ impl Headset for OpenXr {
         }
     }
 
+    fn is_patient(&self) -> bool {
+        false
+    }
+
     fn refresh(
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,

@@ -23,7 +23,7 @@ use wheatstone_core::view::{Frustum, PixelRect, View};
 use wheatstone_core::volume::{Grid, Volume, Voxels};
 
 /// Most time that the first picture is waited for: kernels are compiled by then.
-const FIRST_PICTURE: Duration = Duration::from_secs(2);
+const FIRST_PICTURE: Duration = Duration::from_secs(10);
 
 /// What a part of the first picture may take.
 const PART: Duration = Duration::from_millis(20);

@@ -117,12 +117,19 @@ impl Headset for Replay {
         Some(0.0)
     }
 
+    fn is_patient(&self) -> bool {
+        self.clock == Clock::Patient
+    }
+
     fn refresh(
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
     ) -> Result<Moment, Failure> {
         if self.is_closed {
             return Ok(Moment::Ended("the session was closed".to_owned()));
+        }
+        if self.clock == Clock::Patient {
+            self.gpu.wait()?;
         }
         let begun = *self.begun.get_or_insert_with(Instant::now);
         let period_s = self.display.period_s();
@@ -207,6 +214,10 @@ impl<H: Headset> Headset for Guided<H> {
         self.headset.floor_y_m()
     }
 
+    fn is_patient(&self) -> bool {
+        self.headset.is_patient()
+    }
+
     fn refresh(
         &mut self,
         draw: &mut dyn FnMut(&mut dyn Sight) -> Result<(), Failure>,
@@ -217,7 +228,7 @@ impl<H: Headset> Headset for Guided<H> {
             let own = *sight.tick();
             let time_s = own.display_time_s - *first_s.get_or_insert(own.display_time_s);
             match played.tick_at(time_s, own.period_s) {
-                Some(recorded) => draw(&mut Guide { sight, tick: guided(&own, &recorded) }),
+                Some(recorded) => draw(&mut Guide { sight, own, tick: guided(&own, &recorded) }),
                 None => {
                     is_over = true;
                     Ok(())
@@ -252,8 +263,18 @@ fn guided(own: &Tick, recorded: &Tick) -> Tick {
     Tick { eyes, hands: recorded.hands, ..*own }
 }
 
+/// What one head sees at a pose, for another head.
+fn seen_alike(pose: &Pose, by: &Pose, other: &Pose) -> Pose {
+    let by_own = by.orientation.inverse();
+    other.of_own(&Pose {
+        position_m: by_own * (pose.position_m - by.position_m),
+        orientation: by_own * pose.orientation,
+    })
+}
+
 struct Guide<'a> {
     sight: &'a mut dyn Sight,
+    own: Tick,
     tick: Tick,
 }
 
@@ -266,8 +287,11 @@ impl Sight for Guide<'_> {
         self.sight.eye_images()
     }
 
+    /// Where the head that looks sees it as the recorded one would.
     fn place_panel(&mut self, pose: Pose) {
-        self.sight.place_panel(pose);
+        if let (Some(own), Some(recorded)) = (self.own.between_eyes(), self.tick.between_eyes()) {
+            self.sight.place_panel(seen_alike(&pose, &recorded, &own));
+        }
     }
 
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {
@@ -293,5 +317,26 @@ impl Sight for Drawn<'_> {
 
     fn panel_image(&mut self) -> Result<Option<wgpu::TextureView>, Failure> {
         Ok(None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DQuat, DVec3};
+
+    #[test]
+    fn a_panel_is_where_the_head_that_looks_sees_it_as_the_recorded_one_would() {
+        let turned = |x: f64, yaw: f64| Pose {
+            position_m: DVec3::new(x, 1.6, 0.2),
+            orientation: DQuat::from_rotation_y(yaw),
+        };
+        let (recorded, own, panel) = (turned(0.1, 0.4), turned(-2.0, 2.5), turned(0.3, 1.0));
+        assert!(seen_alike(&panel, &recorded, &recorded).distance_to_m(&panel) < 1e-12);
+        let placed = seen_alike(&panel, &recorded, &own);
+        let seen = |pose: &Pose, by: &Pose| by.orientation.inverse() * (pose.position_m - by.position_m);
+        assert!(seen(&placed, &own).distance(seen(&panel, &recorded)) < 1e-12);
+        let turn = |pose: &Pose, by: &Pose| by.orientation.inverse() * pose.orientation;
+        assert!(turn(&placed, &own).angle_between(turn(&panel, &recorded)) < 1e-6);
     }
 }

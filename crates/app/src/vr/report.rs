@@ -51,8 +51,8 @@ impl Report {
     }
 
     /// Mean and worst of a figure of the refreshes that were checked, by whether the eyes moved.
-    fn of_checked(&self, moves: bool, figure: impl Fn(&Checked) -> f64) -> Option<[f64; 2]> {
-        let of: Vec<f64> = self.checked.iter().filter(|c| c.moves == moves).map(figure).collect();
+    fn of_checked(&self, moves: bool, figure: impl Fn(&Checked) -> Option<f64>) -> Option<[f64; 2]> {
+        let of: Vec<f64> = self.checked.iter().filter(|c| c.moves == moves).filter_map(figure).collect();
         let worst = of.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         (!of.is_empty()).then(|| [of.iter().sum::<f64>() / of.len() as f64, worst])
     }
@@ -60,7 +60,8 @@ impl Report {
     /// One row.
     pub(crate) fn to_json(&self) -> Value {
         let [median, p99, most] = self.draw_ms().map_or([None; 3], |ms| ms.map(Some));
-        let [moving, still] = [true, false].map(|moves| self.of_checked(moves, |checked| checked.dssim));
+        let [moving, still] =
+            [true, false].map(|moves| self.of_checked(moves, |checked| Some(checked.dssim)));
         let [covered_moving, covered_still] =
             [true, false].map(|moves| self.of_checked(moves, |checked| checked.dssim_covered));
         json!({
@@ -128,15 +129,17 @@ impl Report {
             ));
         }
         for (moves, what) in [(true, "moving"), (false, "still")] {
-            let whole = self.of_checked(moves, |checked| checked.dssim);
+            let whole = self.of_checked(moves, |checked| Some(checked.dssim));
             let covered = self.of_checked(moves, |checked| checked.dssim_covered);
-            if let (Some([mean, worst]), Some([mean_covered, worst_covered])) = (whole, covered) {
-                lines.push(format!(
-                    "DSSIM from direct renders, {what}: mean {mean:.5}, worst {worst:.5}; where the volume is: mean \
-                     {mean_covered:.5}, worst {worst_covered:.5}"
-                ));
+            for (figure, part) in [(whole, ""), (covered, " where the volume is")] {
+                if let Some([mean, worst]) = figure {
+                    lines.push(format!(
+                        "DSSIM from direct renders{part}, {what}: mean {mean:.5}, worst {worst:.5}"
+                    ));
+                }
             }
         }
+        lines.extend(self.failures.iter().map(|failure| format!("failed: {failure}")));
         lines.join("\n")
     }
 }

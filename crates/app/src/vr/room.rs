@@ -35,7 +35,8 @@ const NAP: Duration = Duration::from_millis(10);
 /// Part of a refresh that is kept free, for what the runtime does with pictures.
 const KEPT_FREE: f64 = 0.15;
 
-/// Part of a refresh that casting gets even where drawing takes too long: whatever is shown would else stay as it is.
+/// Part of the time from refresh to refresh that casting gets even where drawing takes too long: whatever is shown would else stay as
+/// it is.
 const LEAST_CAST: f64 = 0.1;
 
 /// Part of the time for casting that a volume on its way gets.
@@ -131,6 +132,14 @@ pub(crate) struct Mirrored<'a> {
     pub(crate) beholder: Beholder,
 }
 
+/// What time there is to cast in.
+#[derive(Debug, Clone, Copy)]
+struct Casts {
+    until: Instant,
+    /// However late it is.
+    least: Duration,
+}
+
 /// The volume, what looks at it, and what takes hold of it.
 pub(crate) struct Room {
     pub(super) gpu: Arc<Gpu>,
@@ -157,8 +166,10 @@ pub(crate) struct Room {
     /// A volume that is shown from the next refresh on.
     arrived: Option<(Box<Arrived>, Showing)>,
     tick: Option<Tick>,
-    /// Until when there is time to cast; none while the headset wants no pictures.
-    cast_until: Option<Instant>,
+    /// When the refresh before was begun; none after a pause.
+    begun: Option<Instant>,
+    /// None while the headset wants no pictures.
+    casts: Option<Casts>,
     pub(super) pictures: Option<[wgpu::TextureView; 2]>,
     timings: Timings,
     floor_y_m: Option<f64>,
@@ -198,7 +209,8 @@ impl Room {
             aimed: Vec::new(),
             arrived: None,
             tick: None,
-            cast_until: None,
+            begun: None,
+            casts: None,
             pictures: None,
             timings: Timings::default(),
             floor_y_m: headset.floor_y_m(),
@@ -279,11 +291,16 @@ impl Room {
                     self.report.late.pause();
                 }
                 self.report.period_s = tick.period_s;
-                self.cast_until = Some(begun + Duration::from_secs_f64((1.0 - KEPT_FREE) * tick.period_s));
+                let period = Duration::try_from_secs_f64(tick.period_s).unwrap_or_default();
+                let since = self.begun.map_or(period, |last| begun - last);
+                let casts = Casts::after(begun, since, period);
+                let whole = period.mul_f64(1.0 - KEPT_FREE);
+                self.casts = Some(if headset.is_patient() { Casts { least: whole, ..casts } } else { casts });
+                self.begun = Some(begun);
             }
             _ => {
                 self.report.late.pause();
-                self.cast_until = None;
+                (self.begun, self.casts) = (None, None);
             }
         }
         Ok(moment)
@@ -291,12 +308,11 @@ impl Room {
 
     /// Takes a step of a load that is under way, and hands over as much casting as there is time for before the next refresh.
     fn cast(&mut self) -> Result<(), Failure> {
-        let Some(until) = self.cast_until else { return Ok(()) };
-        let left = || time_to_cast(until.saturating_duration_since(Instant::now()), self.report.period_s);
+        let Some(casts) = self.casts else { return Ok(()) };
         if self.arrived.is_none() {
-            self.arrived = self.session.step(&self.gpu, left().mul_f64(LOAD));
+            self.arrived = self.session.step(&self.gpu, casts.left().mul_f64(LOAD));
         }
-        let cast = self.casting.refresh(&self.gpu, left());
+        let cast = self.casting.refresh(&self.gpu, casts.left());
         self.session.notes.survive(cast).map(drop)
     }
 
@@ -329,7 +345,8 @@ impl Room {
         self.pictures = match (self.casting.front(), &wanted) {
             (Some(front), Some(views)) => {
                 let wanted = Wanted { picture: self.casting.pictures(), views: views.to_vec(), warp };
-                self.eyes.show(&self.gpu, front, wanted)?
+                let shown = self.eyes.show(&self.gpu, front, wanted);
+                self.session.notes.survive(shown)?.flatten()
             }
             _ => None,
         };
@@ -392,6 +409,9 @@ impl Room {
         self.aimed = views;
         self.pointing = held.map(|caster| Pointing::new(caster, grid));
         self.report.volume = showing.name().to_owned();
+        if let Some(checks) = &mut self.checks {
+            checks.forget();
+        }
         self.session.show(showing);
         Ok(())
     }
@@ -512,7 +532,9 @@ impl Room {
                     behind: behind.clone(),
                     in_front: in_front.clone(),
                 };
-                checks.keep(&self.gpu, &mut encoder, self.session.state(), side, &images[eye], seen)?;
+                let kept =
+                    checks.keep(&self.gpu, &mut encoder, self.session.state(), side, &images[eye], seen);
+                self.session.notes.survive(kept)?;
             }
         }
         Ok(self.gpu.queue().submit([encoder.finish()]))
@@ -559,9 +581,15 @@ impl Room {
     }
 }
 
-/// What is left of a refresh of so many seconds, or the least that casting gets.
-fn time_to_cast(left: Duration, period_s: f64) -> Duration {
-    left.max(Duration::from_secs_f64(LEAST_CAST * period_s))
+impl Casts {
+    /// After a refresh that was begun some time after the one before.
+    fn after(begun: Instant, since: Duration, period: Duration) -> Self {
+        Self { until: begun + period.mul_f64(1.0 - KEPT_FREE), least: since.max(period).mul_f64(LEAST_CAST) }
+    }
+
+    fn left(self) -> Duration {
+        self.until.saturating_duration_since(Instant::now()).max(self.least)
+    }
 }
 
 /// The floor, where it is known, and the horizon about the head.
@@ -740,7 +768,12 @@ mod tests {
     #[test]
     fn casting_goes_on_where_drawing_takes_a_whole_refresh() {
         let ms = Duration::from_millis;
-        assert_eq!(time_to_cast(ms(7), 0.011), ms(7));
-        assert!(time_to_cast(Duration::ZERO, 0.011) > ms(1));
+        let past =
+            |since: Duration| Casts { until: Instant::now(), ..Casts::after(Instant::now(), since, ms(11)) };
+        assert!(past(ms(11)).left() > ms(1));
+        // A tenth of the time that refreshes do take.
+        assert!(past(ms(80)).left() >= ms(8));
+        let ahead = Casts::after(Instant::now() + ms(1000), ms(11), ms(11));
+        assert!(ahead.left() > ms(900));
     }
 }

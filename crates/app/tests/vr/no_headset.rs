@@ -151,10 +151,11 @@ fn a_report_has_what_is_documented() {
     for (index, check) in checked.iter().enumerate() {
         let eye = ["left", "right"][index % 2];
         assert_eq!(check["eye"], eye);
-        // What is black all around is alike.
+        // What is around it is alike.
         let [whole, covered] = ["dssim", "dssim_covered"].map(|figure| check[figure].as_f64().unwrap());
         assert!(covered >= whole && whole >= 0.0, "{check}");
-        let name = format!("shown/refresh_{:05}_{eye}.png", check["refresh"].as_u64().unwrap());
+        let name =
+            format!("shown/sphere_volumetric/refresh_{:05}_{eye}.png", check["refresh"].as_u64().unwrap());
         assert_eq!(image::image_dimensions(folder.path().join(name)).unwrap(), (32, 32));
     }
 }
@@ -236,7 +237,8 @@ fn eyes_that_walk_into_the_volume_see_it_from_inside() {
     let last = &checked[checked.len() - 1];
     assert_eq!((&last["refresh"], &last["moves"]), (&120.into(), &false.into()), "{checked:?}");
     assert!(last["dssim_covered"].as_f64().unwrap() <= 0.003, "{last}");
-    let corner = image::open(folder.path().join("shown/refresh_00120_left.png")).unwrap().into_luma8();
+    let corner =
+        image::open(folder.path().join("shown/head_volumetric/refresh_00120_left.png")).unwrap().into_luma8();
     assert!(corner.get_pixel(1, 1).0[0] > 40, "the volume does not fill the eye's picture");
 }
 
@@ -278,6 +280,12 @@ fn a_bad_recording_is_refused_with_its_line() {
         assert_eq!(run.code, 2, "{run:?}");
         let error = run.error();
         assert!(error.contains("bad.jsonl") && error.contains("line 5"), "{error}");
+    }
+    let flags = ["--tf", "none.json", "--patient", "--refreshes", "1"];
+    for command in [&["vr", "--headset", "none"][..], &["bench", "vr"]] {
+        let run = wheatstone(folder.path(), &[command, &["sphere.nrrd"], &flags].concat());
+        assert_eq!(run.code, 2, "{run:?}");
+        assert!(run.error().contains("none.json"));
     }
     let run = wheatstone(folder.path(), &["vr", "--headset", "none", "--replay", "none.jsonl"]);
     assert_eq!(run.code, 2, "{run:?}");

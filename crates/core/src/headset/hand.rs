@@ -22,8 +22,8 @@ impl Side {
     }
 }
 
-/// Farthest from the world's origin that a hand is tracked, metres.
-const FARTHEST_M: f64 = 1000.0;
+/// Farthest from the world's origin that a head or a hand is tracked, metres.
+pub(super) const FARTHEST_M: f64 = 1000.0;
 
 /// What a hand does. A hand that is not tracked has no poses, and nothing pressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

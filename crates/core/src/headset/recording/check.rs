@@ -1,6 +1,7 @@
 //! What a tick must be like.
 
 use crate::head::Pose;
+use crate::headset::hand::FARTHEST_M;
 use crate::headset::{Eye, Hand, Tick};
 use crate::view::Frustum;
 use thiserror::Error;
@@ -86,7 +87,9 @@ fn checked_eye(eye: Eye) -> Result<Eye, TickError> {
     if !(is_window && left < right && down < up && 0.0 <= near_m && near_m < far_m) {
         return Err(TickError::Frustum);
     }
-    Ok(Eye { pose: eye.pose.normalized().ok_or(TickError::Pose("eye"))?, ..eye })
+    let pose = eye.pose.normalized().ok_or(TickError::Pose("eye"))?;
+    within("eye's distance in m", pose.position_m.abs().max_element(), [0.0, FARTHEST_M])?;
+    Ok(Eye { pose, ..eye })
 }
 
 fn checked_hand(hand: Hand) -> Result<Hand, TickError> {

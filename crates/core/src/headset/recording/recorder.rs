@@ -24,7 +24,8 @@ impl<W: Write> Recorder<W> {
     /// Writes a tick.
     ///
     /// # Errors
-    /// What cannot be written, and a tick that no recording may have: it is left out, and recording can go on.
+    /// What cannot be written, and a tick that no recording may have: it is left out, and recording can go on (after a gap that is too long
+    /// only anew).
     pub fn record(&mut self, tick: &Tick) -> Result<(), RecordingError> {
         let index = self.written;
         if index >= MOST_TICKS {
