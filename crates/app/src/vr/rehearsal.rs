@@ -22,7 +22,7 @@ use wheatstone_core::scene::Shading;
 use wheatstone_core::view::{Frustum, PixelRect, View};
 use wheatstone_core::volume::{Grid, Volume, Voxels};
 
-/// Most time that the first picture is waited for: kernels are compiled by then.
+/// Most time that a first picture is waited for: kernels are compiled by then.
 const FIRST_PICTURE: Duration = Duration::from_secs(10);
 
 /// What a part of the first picture may take.
@@ -70,12 +70,12 @@ impl Room {
         let views = self.cast_views(showing.state.stereo.method, &eyes(0.0), &stand, headset.eye_sizes());
         self.show(arrived, showing, views.clone())?;
         commands.iter().for_each(|command| self.session.perform(command));
-        self.casting.follow(&self.gpu, self.session.state(), views)?;
-        let begun = Instant::now();
-        while self.casting.front().is_none() && begun.elapsed() < FIRST_PICTURE {
-            self.casting.refresh(&self.gpu, PART)?;
-            self.gpu.wait()?;
+        let asked = self.session.state().pace.warp;
+        // What refreshes begin with comes last.
+        if asked == WarpName::Volumetric {
+            self.rehearse_picture(WarpName::Grid, &views)?;
         }
+        self.rehearse_picture(asked, &views)?;
         self.rehearse_refresh(headset, &stand)?;
         let [view, _] = upright_views(&eyes(0.0), &stand, [SMALL; 2]);
         let looks: &[_] = match control {
@@ -112,6 +112,19 @@ impl Room {
             let volume = Volume::new(grid, voxels(side.pow(3))).map_err(Failure::input)?;
             let opened = self.session.loader.upload_at_once(volume, &self.gpu)?;
             self.casting.rehearse_with(&self.gpu, opened, self.session.state(), view)?;
+        }
+        Ok(())
+    }
+
+    /// Casts a picture as refreshes do that are warped so.
+    fn rehearse_picture(&mut self, warp: WarpName, views: &[View]) -> Result<(), Failure> {
+        let mut state = self.session.state().clone();
+        state.pace.warp = warp;
+        self.casting.follow(&self.gpu, &state, views.to_vec())?;
+        let (begun, before) = (Instant::now(), self.casting.pictures());
+        while self.casting.pictures() == before && begun.elapsed() < FIRST_PICTURE {
+            self.casting.refresh(&self.gpu, PART)?;
+            self.gpu.wait()?;
         }
         Ok(())
     }
