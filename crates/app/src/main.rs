@@ -12,6 +12,7 @@ mod heat_map;
 mod interrupt;
 mod layering;
 mod look;
+mod many_views;
 mod output;
 mod pair_cost;
 mod pairing;

@@ -117,6 +117,11 @@ impl Variant {
         self.record == RECORD_LAYERS
     }
 
+    /// The kernel that leaves what rays pass in slabs of depth beside the picture.
+    pub(crate) fn with_slabs(self) -> Self {
+        Self { record: RECORD_SLABS, start: START_AT_ONCE, ..self }
+    }
+
     /// The kernel whose rays start by what the last picture saw first, and that notes what this one does.
     pub(crate) fn leaping(self, tiles: Tiles) -> Self {
         Self { record: RECORD_NEAREST, start: START_BY_TILE, tiles: tiles.file(), ..self }
@@ -268,6 +273,7 @@ impl Variant {
         };
         let composites: Vec<Self> = all.iter().filter(is_listed_composite).copied().collect();
         all.extend(composites.iter().map(|variant| variant.with_layers()));
+        all.extend(composites.iter().map(|variant| variant.with_slabs()));
         all.extend(composites.iter().map(|variant| variant.behind()));
         all.extend(leaping);
         let in_parts: Vec<Self> = all.iter().map(|variant| variant.in_parts()).collect();
@@ -312,6 +318,7 @@ const TILES_ALL: &str = "lib/tiles_all";
 const TILES_LISTED: &str = "lib/tiles_listed";
 const RECORD_NONE: &str = "lib/record_none";
 const RECORD_LAYERS: &str = "lib/record_layers";
+const RECORD_SLABS: &str = "lib/record_slabs";
 const RECORD_NEAREST: &str = "lib/record_nearest";
 const START_AT_ONCE: &str = "lib/start_at_once";
 const START_BY_TILE: &str = "lib/start_by_tile";
@@ -483,7 +490,7 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
-        assert_eq!(variants.len(), 1048);
+        assert_eq!(variants.len(), 1176);
     }
 
     #[test]

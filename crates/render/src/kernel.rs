@@ -56,6 +56,7 @@ mod tests {
 
     fn all() -> Vec<KernelFiles<'static>> {
         let mut all = crate::skip::kernel_files();
+        all.extend(crate::anchors::kernel_files());
         all.extend(crate::first_hits::kernel_files());
         all.extend(crate::gradient_map::kernel_files());
         all.extend(crate::warp::kernel_files());

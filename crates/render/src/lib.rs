@@ -3,6 +3,7 @@
 //! [`Gpu`] is the device, [`GpuVolume`] an uploaded volume, [`Renderer`] the one loop over views. Every kernel
 //! has its CPU twin in `wheatstone_core::reference`.
 
+mod anchors;
 mod buffers;
 mod cast_pass;
 mod first_hits;
@@ -36,6 +37,7 @@ mod volume;
 mod volume_upload;
 pub mod warp;
 
+pub use anchors::CastAnchors;
 pub use gpu::{AdapterDescription, Gpu, GpuError};
 pub use gradient_map::GpuGradientMap;
 pub use layers_error::LayersError;

@@ -1,5 +1,6 @@
 //! The renderer: what is kept between frames, and the one loop over views.
 
+use crate::anchors::DerivePass;
 use crate::buffers::storage;
 use crate::cast_pass::{self, Tiles, Variant, VariantPipelines};
 use crate::first_hits::{GpuFirstHits, StartPass};
@@ -32,6 +33,10 @@ use wheatstone_core::transfer::{LUT_1D_ENTRIES, LutEntry};
 use wheatstone_core::view::View;
 use wheatstone_core::warp::{LayerError, LayerThresholds};
 
+/// Opacity at which rays of anchors end at the latest: what is behind that is not kept, for what a slab adds to the picture would be
+/// rounded too much to tell what is in it.
+const MOST_ANCHOR_ALPHA: f32 = 0.999;
+
 /// Most bytes of ray states between dispatches.
 pub(crate) const MOST_STATE_BYTES: u64 = 64 << 20;
 
@@ -56,6 +61,7 @@ pub struct Renderer {
     pair_tile_passes: HashMap<Quality, PairTilePass>,
     layer_passes: HashMap<(LayerFormat, Quality), LayerPass>,
     pub(crate) novel_view_pass: Option<NovelViewPass>,
+    pub(crate) derive_pass: Option<DerivePass>,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
@@ -169,6 +175,7 @@ impl Renderer {
             pair_tile_passes: HashMap::new(),
             layer_passes: HashMap::new(),
             novel_view_pass: None,
+            derive_pass: None,
             sampler,
             unused,
             no_map,
@@ -273,6 +280,30 @@ impl Renderer {
         gpu.check()?;
         Ok(Prepared {
             parameters: prepared.parameters.clone(),
+            variant,
+            iterations_per_sample: prepared.iterations_per_sample + cast_pass::ITERATIONS_OF_RECORDING,
+            cast_uniform,
+            view_uniform,
+            frame,
+            volume: prepared.volume.clone(),
+            ..*prepared
+        })
+    }
+
+    /// The same of a composite, whose rays leave what they pass in slabs of depth beside the picture, in targets that have room for that.
+    ///
+    /// # Errors
+    /// A kernel that the driver refuses, no memory, a lost device.
+    pub(crate) fn with_slabs(&mut self, gpu: &Gpu, prepared: &Prepared) -> Result<Prepared, GpuError> {
+        let variant = prepared.variant.with_slabs();
+        self.casts.pipeline(gpu, variant)?;
+        let termination_alpha = prepared.parameters.termination_alpha.min(MOST_ANCHOR_ALPHA);
+        let parameters = CastParameters { termination_alpha, ..prepared.parameters.clone() };
+        let cast_uniform = CastUniform { termination_alpha, ..prepared.cast_uniform };
+        let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
+        gpu.check()?;
+        Ok(Prepared {
+            parameters,
             variant,
             iterations_per_sample: prepared.iterations_per_sample + cast_pass::ITERATIONS_OF_RECORDING,
             cast_uniform,
@@ -514,9 +545,10 @@ impl Renderer {
     ) -> wgpu::BindGroup {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let layers = target.layers.as_ref().unwrap_or(&self.no_layers);
-        let (starts, nearness) = match &target.first_hits {
-            Some(hits) => (&hits.starts, &hits.nearness),
-            None => (&self.front.depth, &self.unused[2]),
+        let (starts, recorded) = match (&target.first_hits, &target.slabs) {
+            (Some(hits), _) => (&hits.starts, &hits.nearness),
+            (None, Some(slabs)) => (&self.front.depth, &slabs.cells),
+            (None, None) => (&self.front.depth, &self.unused[2]),
         };
         bind(
             &gpu.device,
@@ -533,7 +565,7 @@ impl Renderer {
                 wgpu::BindingResource::TextureView(&view(&self.front.color)),
                 wgpu::BindingResource::TextureView(&view(&self.front.depth)),
                 wgpu::BindingResource::TextureView(&view(starts)),
-                nearness.as_entire_binding(),
+                recorded.as_entire_binding(),
             ],
         )
     }
@@ -594,6 +626,9 @@ impl Renderer {
         let bands = band_samples(parameters, view);
         let bands_with_states = if may_be_split { state_rows / BAND_ROWS } else { u32::MAX };
         let mut piece = ViewUniform::of_squares(parameters, view, &covered);
+        if let Some(slabs) = &target.slabs {
+            piece.pair = slabs.uniform();
+        }
         if let Some(list) = &list {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             list.begin_picture(&mut encoder);

@@ -1,5 +1,6 @@
 //! Where a view is cast to: colour, depth and sample counts of one picture, and their way back to the host.
 
+use crate::anchors::GpuSlabs;
 use crate::first_hits::GpuFirstHits;
 use crate::gpu::{Gpu, GpuError};
 use crate::readback::read_texture;
@@ -43,6 +44,8 @@ pub struct Target {
     pub(crate) layers: Option<wgpu::Texture>,
     /// What the picture saw first and where its rays started, if casts are to leap.
     pub(crate) first_hits: Option<GpuFirstHits>,
+    /// What rays pass in slabs of depth, if casts are to keep that.
+    pub(crate) slabs: Option<GpuSlabs>,
     /// What is not blank at most.
     pub(crate) drawn: Squares,
 }
@@ -60,7 +63,15 @@ impl Target {
         let [color, depth] = ["color target", "depth target"]
             .map(|label| target_texture(gpu, label, Self::COLOR_FORMAT, size, 1));
         gpu.check()?;
-        Ok(Self { size, color, depth, layers: None, first_hits: None, drawn: Squares::default() })
+        Ok(Self {
+            size,
+            color,
+            depth,
+            layers: None,
+            first_hits: None,
+            slabs: None,
+            drawn: Squares::default(),
+        })
     }
 
     /// The same with room for the layers of emission and absorption that casts prepared for them keep.

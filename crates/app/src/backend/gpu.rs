@@ -4,7 +4,8 @@ mod warping;
 
 pub(crate) use warping::GpuWarping;
 
-use super::{GradientMapSize, Leaping, NoPair, PairCast, Shot, median_ms};
+use super::{AnchorCast, GradientMapSize, Leaping, PairCast, Shot, Underived, median_ms};
+use crate::failure::Failure;
 use crate::pairing::Pairing;
 use crate::progress::Bar;
 use crate::skipping::Skipping;
@@ -13,6 +14,7 @@ use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::detail::{LevelOfDetail, Slab};
 use wheatstone_core::gradient_map::GradientDepth;
+use wheatstone_core::lightfield::anchors::AnchorPlan;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::scene::{GradientMethod, Mode};
 use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest};
@@ -22,8 +24,8 @@ use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::live::{LiveError, LiveView};
 use wheatstone_render::skip::{DmBaseline, GpuBlockRanges, GpuSkipMap, SkipBuilder, SkipKernels};
 use wheatstone_render::{
-    Gpu, GpuError, GpuGradientMap, GpuVolume, Leap, PairError, Prepared, Renderer, Sources, Target,
-    TexelFormat,
+    CastAnchors, Gpu, GpuError, GpuGradientMap, GpuVolume, Leap, PairError, Prepared, Renderer, Sources,
+    Target, TexelFormat,
 };
 
 /// The GPU's side of [`super::Engine`].
@@ -39,6 +41,8 @@ pub(crate) struct GpuEngine {
     /// One for each view that was ever cast at a time; the last cast is in the first `cast_count`.
     targets: Vec<Target>,
     cast_count: usize,
+    /// The anchors of the last views, and what casting them read.
+    anchors: Option<CastAnchors>,
     /// What the last picture of [`GpuEngine::cast_after`] was cast to before.
     last: Option<Target>,
     pub(super) upload: Duration,
@@ -104,6 +108,7 @@ impl GpuEngine {
             scenes: Vec::new(),
             targets: Vec::new(),
             cast_count: 0,
+            anchors: None,
             last: None,
             upload,
         })
@@ -307,10 +312,10 @@ impl GpuEngine {
         shot: Shot,
         views: [View; 2],
         pairing: &Pairing,
-    ) -> Result<PairCast, NoPair> {
+    ) -> Result<PairCast, Underived> {
         let [reference, derived] = pairing.reference.and_other(views);
         let epipolar = Epipolar::new(&reference, &derived).map_err(PairError::from)?;
-        self.fit_targets(&views).map_err(NoPair::Gpu)?;
+        self.fit_targets(&views).map_err(Underived::Gpu)?;
         let [left, right, ..] = &mut self.targets[..] else { unreachable!() };
         let targets = pairing.reference.and_other([left, right]);
         let prepared = &self.scenes[shot.0].prepared;
@@ -318,6 +323,39 @@ impl GpuEngine {
         let start = Instant::now();
         let report = self.renderer.render_pair(&self.gpu, prepared, &epipolar, pairing.method(), targets)?;
         Ok(PairCast { time: start.elapsed(), report })
+    }
+
+    pub(super) fn cast_anchors(
+        &mut self,
+        shot: Shot,
+        views: &[View],
+        count: Option<u32>,
+    ) -> Result<AnchorCast, Underived> {
+        let prepared = &self.scenes[shot.0].prepared;
+        let parameters = prepared.parameters();
+        let corners = parameters.occupied_corners_world();
+        let plan = match count {
+            None => AnchorPlan::new(views, parameters.mode, &corners)?,
+            Some(count) => AnchorPlan::with_count(views, parameters.mode, &corners, count)?,
+        };
+        let start = Instant::now();
+        let anchors = self.renderer.cast_anchors(&self.gpu, prepared, &plan, self.anchors.take())?;
+        let time = start.elapsed();
+        let [samples, map_reads] = anchors.reads(&self.gpu)?;
+        let bytes = anchors.byte_size();
+        self.anchors = Some(anchors);
+        let (count, slabs) = (plan.anchors.len(), plan.slabs.count);
+        Ok(AnchorCast { count, slabs, time, bytes, samples, map_reads })
+    }
+
+    pub(super) fn derive(&mut self, view: usize) -> Result<Duration, Failure> {
+        let anchors = self.anchors.take().ok_or_else(|| Failure::input("no anchors have been cast"))?;
+        self.fit_targets(&[anchors.view(view)])?;
+        let start = Instant::now();
+        self.renderer.derive(&self.gpu, &anchors, view, &mut self.targets[0])?;
+        let time = start.elapsed();
+        self.anchors = Some(anchors);
+        Ok(time)
     }
 
     /// Sees to it that the first targets have the sizes of the views.
@@ -389,11 +427,11 @@ impl Detail {
 }
 
 /// Checks that no part of the volume is too near for a pair of one cast.
-fn check_depths(epipolar: &Epipolar, prepared: &Prepared) -> Result<(), NoPair> {
+fn check_depths(epipolar: &Epipolar, prepared: &Prepared) -> Result<(), Underived> {
     let depths_m = epipolar.depths_m(&prepared.parameters().visible_corners_world());
     let least_m = epipolar.least_depth_m();
     match depths_m {
-        Some(depths_m) if depths_m.start < least_m => Err(NoPair::Refused(format!(
+        Some(depths_m) if depths_m.start < least_m => Err(Underived::Refused(format!(
             "the volume is as near as {:.3} m, rays of both eyes are alike from {least_m:.3} m on",
             depths_m.start
         ))),

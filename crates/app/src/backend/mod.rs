@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::gradient_map::GradientDepth;
+use wheatstone_core::lightfield::anchors::AnchorError;
 use wheatstone_core::reference::Cast;
 use wheatstone_core::skip::{BlockSize, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::view::View;
@@ -76,23 +77,52 @@ pub(crate) struct PairCast {
     pub(crate) report: PairReport,
 }
 
-/// Why one cast has made no pair.
+/// Anchors that views are derived from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AnchorCast {
+    /// How many.
+    pub(crate) count: usize,
+    /// Slabs of depth that their rays are cut into.
+    pub(crate) slabs: u32,
+    /// Time of casting all of them.
+    pub(crate) time: Duration,
+    /// Bytes that they take beside their pictures.
+    pub(crate) bytes: u64,
+    /// Samples that their rays took.
+    pub(crate) samples: u64,
+    /// Reads of the skip map.
+    pub(crate) map_reads: u64,
+}
+
+/// Why pictures have not been derived from others.
 #[derive(Debug)]
-pub(crate) enum NoPair {
-    /// What keeps the one picture from being derived from the rays of the other; two casts can make the pair.
+pub(crate) enum Underived {
+    /// What keeps them from being derived; casts of their own can make them.
     Refused(String),
     /// The device.
     Gpu(GpuError),
 }
 
-impl From<PairError> for NoPair {
+impl From<PairError> for Underived {
     fn from(error: PairError) -> Self {
         match error {
-            PairError::Gpu(GpuError::OutOfMemory { reason } | GpuError::Refused { reason }) => {
-                Self::Refused(reason)
-            }
-            PairError::Gpu(error) => Self::Gpu(error),
+            PairError::Gpu(error) => error.into(),
             other => Self::Refused(other.to_string()),
+        }
+    }
+}
+
+impl From<AnchorError> for Underived {
+    fn from(error: AnchorError) -> Self {
+        Self::Refused(error.to_string())
+    }
+}
+
+impl From<GpuError> for Underived {
+    fn from(error: GpuError) -> Self {
+        match error {
+            GpuError::OutOfMemory { reason } | GpuError::Refused { reason } => Self::Refused(reason),
+            other => Self::Gpu(other),
         }
     }
 }
@@ -327,10 +357,31 @@ impl<'v> Engine<'v> {
         shot: Shot,
         views: [View; 2],
         pairing: &Pairing,
-    ) -> Result<PairCast, NoPair> {
+    ) -> Result<PairCast, Underived> {
         match self {
             Self::Gpu(engine) => engine.cast_pair(shot, views, pairing),
-            Self::Cpu(_) => Err(NoPair::Refused("the CPU renderer casts every eye".to_owned())),
+            Self::Cpu(_) => Err(Underived::Refused("the CPU renderer casts every eye".to_owned())),
+        }
+    }
+
+    /// Casts as many anchors of views side by side as are asked for, or as it takes, for [`Engine::derive`].
+    pub(crate) fn cast_anchors(
+        &mut self,
+        shot: Shot,
+        views: &[View],
+        count: Option<u32>,
+    ) -> Result<AnchorCast, Underived> {
+        match self {
+            Self::Gpu(engine) => engine.cast_anchors(shot, views, count),
+            Self::Cpu(_) => Err(Underived::Refused("the CPU renderer casts every view".to_owned())),
+        }
+    }
+
+    /// Makes the picture of one of the views that anchors were cast for.
+    pub(crate) fn derive(&mut self, view: usize) -> Result<Duration, Failure> {
+        match self {
+            Self::Gpu(engine) => engine.derive(view),
+            Self::Cpu(_) => Err(Failure::input("the CPU renderer derives no views")),
         }
     }
 

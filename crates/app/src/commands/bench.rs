@@ -1,6 +1,6 @@
 //! `bench`: what its commands share.
 
-use super::{bench_cast, bench_detail, bench_skip, bench_stereo, bench_vr, bench_warp};
+use super::{bench_cast, bench_detail, bench_lightfield, bench_skip, bench_stereo, bench_vr, bench_warp};
 use crate::backend::Engine;
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -23,6 +23,7 @@ use wheatstone_io::{Loaded, read_volume};
     wheatstone bench cast bonsai.nii.gz --up A --json\n  \
     wheatstone bench skip beetle:256 --frames 6 --plot plots\n  \
     wheatstone bench detail bonsai.nii.gz --up A --distances 1.2,5\n  \
+    wheatstone bench lightfield bonsai.nii.gz --up A --plot plots\n  \
     wheatstone bench stereo bonsai.nii.gz box:256 --up A --plot plots\n  \
     wheatstone bench vr bonsai.nii.gz\n  \
     wheatstone bench warp bonsai.nii.gz --up A --plot plots")]
@@ -35,6 +36,7 @@ pub(crate) struct BenchArgs {
 enum BenchCommand {
     Cast(bench_cast::CastArgs),
     Detail(bench_detail::DetailArgs),
+    Lightfield(Box<bench_lightfield::LightfieldArgs>),
     Skip(bench_skip::SkipBenchArgs),
     Stereo(Box<bench_stereo::StereoBenchArgs>),
     Vr(Box<bench_vr::VrBenchArgs>),
@@ -46,6 +48,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     match &args.what {
         BenchCommand::Cast(args) => bench_cast::run(args),
         BenchCommand::Detail(args) => bench_detail::run(args),
+        BenchCommand::Lightfield(args) => bench_lightfield::run(args),
         BenchCommand::Skip(args) => bench_skip::run(args),
         BenchCommand::Stereo(args) => bench_stereo::run(args),
         BenchCommand::Vr(args) => bench_vr::run(args),

@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 mod bench_cast;
 mod bench_detail;
+mod bench_lightfield;
 mod bench_skip;
 mod bench_stereo;
 mod bench_vr;

@@ -1,10 +1,13 @@
 //! `quilt`: a volume to the views of a display behind lenses.
 
-use crate::backend::{BackendChoice, Engine, Job, Leaping, Shot, median, milliseconds, note_fallback};
+use crate::backend::{
+    AnchorCast, BackendChoice, Engine, Job, Leaping, Shot, Underived, median, milliseconds, note_fallback,
+};
 use crate::camera::{AimArgs, turn_deg};
 use crate::display::{Display, DisplayArgs, read_calibration};
 use crate::failure::Failure;
 use crate::look::{Look, LookArgs};
+use crate::many_views::{AnchorRequest, ViewsArgs};
 use crate::output::{check_writable, described, print_json};
 use crate::picture::{Bits, write_png, write_png_with_exif};
 use crate::progress::Bar;
@@ -20,6 +23,7 @@ use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::quilt::Sampling;
 use wheatstone_core::lightfield::{Lenticular, QuiltDisplay};
+use wheatstone_core::view::View;
 use wheatstone_core::volume::Volume;
 use wheatstone_io::Loaded;
 
@@ -78,6 +82,9 @@ pub(crate) struct QuiltArgs {
     json: bool,
 
     #[command(flatten)]
+    views: ViewsArgs,
+
+    #[command(flatten)]
     display: DisplayArgs,
 
     #[command(flatten)]
@@ -118,7 +125,7 @@ impl SamplingName {
     }
 }
 
-/// A display, and how the volume stands in it.
+/// A display, how the volume stands in it, and how its views are made.
 struct Stage {
     display: QuiltDisplay,
     lenses: Option<Lenticular>,
@@ -128,11 +135,18 @@ struct Stage {
     /// How far the volume reaches behind and before the screen in any quilt, metres.
     behind_m: f64,
     before_m: f64,
+    /// What views are derived from; nothing where each is cast.
+    anchors: Option<AnchorRequest>,
 }
 
 /// What was made and how long it took.
 struct Made {
+    /// Of every view, without the anchors.
     views_ms: Vec<f64>,
+    /// Of the anchors of all quilts.
+    anchors_ms: f64,
+    /// Those of the last quilt.
+    anchors: Option<AnchorCast>,
     samples: u64,
     map_reads: u64,
     leaping: Leaping,
@@ -144,6 +158,7 @@ pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
     check_writable(&args.output, "png")?;
     args.look.check()?;
     let skipping = args.skip.resolve(SkipName::Auto)?;
+    let anchors = args.views.resolve()?;
     let lenses = args.interlace.as_deref().map(read_calibration).transpose()?;
     let Display::Lenses(display) = args.display.resolve(lenses.as_ref())? else {
         return Err(Failure::input("quilts are for displays behind lenses: this one has projectors"));
@@ -161,13 +176,13 @@ pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
     loaded.volume.fill_non_finite(look.settings.window.lo());
     let volume = &loaded.volume;
     let parameters = CastParameters::new(&look.settings, &args.aim.placement(volume));
-    let stage = args.stage(display, lenses, paths, &parameters)?;
+    let stage = args.stage(display, lenses, paths, anchors, &parameters)?;
     args.warn_of_ghosts(&stage);
-    let mut engine = args.open(args.backend, &display, volume)?;
+    let mut engine = args.open(args.backend, &stage, volume)?;
     let made = match args.make(&mut engine, &stage, &parameters, &skipping) {
         Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
             note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, &display, volume)?;
+            engine = args.open(BackendChoice::Cpu, &stage, volume)?;
             args.make(&mut engine, &stage, &parameters, &skipping)?
         }
         made => made?,
@@ -190,6 +205,7 @@ impl QuiltArgs {
         display: QuiltDisplay,
         lenses: Option<Lenticular>,
         paths: QuiltPaths,
+        anchors: Option<AnchorRequest>,
         parameters: &CastParameters,
     ) -> Result<Stage, Failure> {
         let corners = parameters.visible_corners_world();
@@ -204,7 +220,7 @@ impl QuiltArgs {
         let toward_m = turned.iter().map(|corner| self.before_screen + volume_size_m * corner.z);
         let (least_m, most_m) =
             toward_m.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), z| (lo.min(z), hi.max(z)));
-        Ok(Stage { display, lenses, paths, volume_size_m, behind_m: -least_m, before_m: most_m })
+        Ok(Stage { display, lenses, paths, volume_size_m, behind_m: -least_m, before_m: most_m, anchors })
     }
 
     fn warn_of_ghosts(&self, stage: &Stage) {
@@ -227,14 +243,14 @@ impl QuiltArgs {
     fn open<'v>(
         &self,
         choice: BackendChoice,
-        display: &QuiltDisplay,
+        stage: &Stage,
         volume: &'v Volume,
     ) -> Result<Engine<'v>, Failure> {
         let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
         let job = Job {
-            rays: rays(display) * u64::from(self.frames()),
+            rays: rays(&stage.display) * u64::from(self.frames()),
             samples_per_ray: longest as f64 * self.look.sampling_factor,
-            needs_gpu: false,
+            needs_gpu: stage.anchors.is_some(),
         };
         Engine::open(choice, &job, volume, self.look.storage.kind(volume))
     }
@@ -249,6 +265,8 @@ impl QuiltArgs {
         let shot = engine.prepare(parameters, skipping)?;
         let mut made = Made {
             views_ms: Vec::new(),
+            anchors_ms: 0.0,
+            anchors: None,
             samples: 0,
             map_reads: 0,
             leaping: engine.leaping(shot).clone(),
@@ -257,7 +275,8 @@ impl QuiltArgs {
         let exif = metadata(&stage.display)?;
         let bar = Bar::new("views", u64::from(self.frames() * stage.display.view_count()));
         for frame in 0..self.frames() {
-            let quilt = self.cast(engine, shot, stage, frame, &mut made, &bar)?;
+            let views = self.views_of(stage, frame);
+            let quilt = self.cast(engine, shot, stage, &views, &mut made, &bar)?;
             let number = self.turntable.map(|_| frame);
             let path = stage.paths.quilt(number);
             write_png_with_exif(&path, &quilt, self.bits, exif.clone())?;
@@ -272,25 +291,39 @@ impl QuiltArgs {
         Ok(made)
     }
 
-    /// The quilt of a frame, view by view.
+    /// The views of a frame.
+    fn views_of(&self, stage: &Stage, frame: u32) -> Vec<View> {
+        let display_from_world = DAffine3::from_translation(DVec3::Z * self.before_screen)
+            * DAffine3::from_scale(DVec3::splat(stage.volume_size_m))
+            * self.turned(frame);
+        stage.display.views(self.sampling.sampling(), display_from_world)
+    }
+
+    /// The quilt of some views, view by view.
     fn cast(
         &self,
         engine: &mut Engine<'_>,
         shot: Shot,
         stage: &Stage,
-        frame: u32,
+        views: &[View],
         made: &mut Made,
         bar: &Bar,
     ) -> Result<RgbImage, Failure> {
         let display = &stage.display;
-        let display_from_world = DAffine3::from_translation(DVec3::Z * self.before_screen)
-            * DAffine3::from_scale(DVec3::splat(stage.volume_size_m))
-            * self.turned(frame);
         let [width, height] = display.quilt_size_px;
         let mut quilt = RgbImage { width, height, rgb: vec![[0.0; 3]; width as usize * height as usize] };
         (made.samples, made.map_reads) = (0, 0);
-        for (index, view) in (0..).zip(display.views(self.sampling.sampling(), display_from_world)) {
-            made.views_ms.push(milliseconds(engine.cast(shot, &[view])?));
+        made.anchors = stage.anchors.map(|request| cast_anchors(engine, shot, views, request)).transpose()?;
+        if let Some(anchors) = &made.anchors {
+            made.anchors_ms += milliseconds(anchors.time);
+            (made.samples, made.map_reads) = (anchors.samples, anchors.map_reads);
+        }
+        for (index, view) in (0..).zip(views) {
+            let time = match &made.anchors {
+                Some(_) => engine.derive(index as usize)?,
+                None => engine.cast(shot, &[*view])?,
+            };
+            made.views_ms.push(milliseconds(time));
             for cast in engine.read()? {
                 quilt.paste(&cast.image.over_background(self.background), display.tile_px(index));
                 made.samples += cast.samples;
@@ -311,7 +344,11 @@ impl QuiltArgs {
     ) -> Result<(), Failure> {
         let Stage { display, volume_size_m, .. } = stage;
         let dims = loaded.volume.grid().dims();
-        let quilt_ms = made.views_ms.iter().sum::<f64>() / f64::from(self.frames());
+        let frames = f64::from(self.frames());
+        let derived_ms = made.views_ms.iter().sum::<f64>() / frames;
+        let anchors_ms = made.anchors_ms / frames;
+        let quilt_ms = anchors_ms + derived_ms;
+        let method = if made.anchors.is_some() { "anchors" } else { "each" };
         let settings = &look.settings;
         if self.json {
             let sampling = self.sampling.sampling();
@@ -336,6 +373,12 @@ impl QuiltArgs {
                 "shading": spec::shading_name(settings.shading),
                 "tf": look.transfer_name,
                 "window": [settings.window.lo(), settings.window.hi()],
+                "method": method,
+                "anchors": made.anchors.map(|anchors| anchors.count),
+                "slabs": made.anchors.map(|anchors| anchors.slabs),
+                "anchor_ms": made.anchors.map(|_| anchors_ms),
+                "derived_ms": made.anchors.map(|_| derived_ms),
+                "bytes": made.anchors.map_or(0, |anchors| anchors.bytes),
                 "view_ms": median(&made.views_ms),
                 "quilt_ms": quilt_ms,
                 "samples": made.samples,
@@ -364,6 +407,19 @@ impl QuiltArgs {
         );
         Ok(())
     }
+}
+
+/// Casts the anchors of views.
+fn cast_anchors(
+    engine: &mut Engine<'_>,
+    shot: Shot,
+    views: &[View],
+    request: AnchorRequest,
+) -> Result<AnchorCast, Failure> {
+    engine.cast_anchors(shot, views, request.count).map_err(|error| match error {
+        Underived::Gpu(error) => error.into(),
+        Underived::Refused(why) => Failure::input(format!("--views-method anchors: {why}")),
+    })
 }
 
 /// Pixels of all views.

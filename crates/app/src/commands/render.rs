@@ -1,7 +1,8 @@
 //! `render`: a volume file to a picture.
 
 use crate::backend::{
-    BackendChoice, Engine, GradientMapSize, Job, Leaping, NoPair, Shot, median, milliseconds, note_fallback,
+    BackendChoice, Engine, GradientMapSize, Job, Leaping, Shot, Underived, median, milliseconds,
+    note_fallback,
 };
 use crate::camera::{CameraArgs, Stereo, turn_deg};
 use crate::failure::Failure;
@@ -265,8 +266,8 @@ impl RenderArgs {
                     made.pair_bytes = Some(pair.report.bytes);
                     return Ok(milliseconds(pair.time));
                 }
-                Err(NoPair::Gpu(error)) => return Err(error.into()),
-                Err(NoPair::Refused(why)) => {
+                Err(Underived::Gpu(error)) => return Err(error.into()),
+                Err(Underived::Refused(why)) => {
                     eprintln!("note: {} cannot make this pair ({why}): using two-pass", pairing.form.name());
                     (made.pairing, made.pair_bytes) = (None, None);
                 }

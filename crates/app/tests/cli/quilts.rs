@@ -382,3 +382,57 @@ fn the_gpu_makes_the_same_quilt() {
     let compared = bench.run(&["compare", "cpu_qs3x2a1.png", "gpu_qs3x2a1.png", "--json"]).json();
     assert!(compared["dssim"].as_f64().unwrap() <= 0.002, "{compared}");
 }
+
+#[test]
+fn views_method_says_what_cannot_be_derived() {
+    let bench = Bench::new();
+    let report = quilt(&bench, "q.png", &["--json"]).json();
+    assert_eq!(
+        (&report["method"], &report["anchors"], &report["bytes"]),
+        (&json!("each"), &json!(null), &json!(0))
+    );
+    let refused = try_quilt(&bench, "q.png", &["--views-method", "each", "--anchors", "2"]);
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("--anchors needs --views-method anchors"), "{}", refused.stderr);
+    let refused = try_quilt(&bench, "q.png", &["--views-method", "anchors"]);
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("--views-method anchors: the CPU renderer"), "{}", refused.stderr);
+}
+
+#[test]
+fn views_come_of_anchors() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let base = [
+        "quilt",
+        "sphere.nrrd",
+        "--backend",
+        "gpu",
+        "--tf",
+        "ramp:0.2..0.9",
+        "--volume-size",
+        "0.05",
+        "--json",
+    ];
+    let made = |output: &str, flags: &[&str]| {
+        let run = bench.run(&[&base[..], &["-o", output], &SMALL, flags].concat());
+        (run.code == 0).then(|| run.json()).ok_or(run.stderr)
+    };
+    let each = made("each.png", &["--views-method", "each"]).unwrap();
+    let anchors = made("anchors.png", &["--views-method", "anchors", "--anchors", "2"]).unwrap();
+    assert_eq!(
+        (&each["method"], &anchors["method"], &anchors["anchors"]),
+        (&json!("each"), &json!("anchors"), &json!(2))
+    );
+    assert!(
+        anchors["bytes"].as_u64() > Some(0) && anchors["samples"].as_u64() < each["samples"].as_u64(),
+        "{anchors}"
+    );
+    let same = bench.run(&["compare", "each_qs3x2a1.png", "anchors_qs3x2a1.png", "--json"]).json();
+    assert!(same["dssim"].as_f64().unwrap() < 0.01, "{same}");
+    let error = made("mip.png", &["--mode", "mip", "--views-method", "anchors"]).unwrap_err();
+    assert!(error.contains("--views-method anchors: mode Mip: only composites"), "{error}");
+    assert_eq!(made("mip.png", &["--mode", "mip"]).unwrap()["method"], "each");
+}

@@ -318,6 +318,36 @@ fn bench_detail_compares_near_and_far() {
 }
 
 #[test]
+fn bench_lightfield_compares_anchors_with_casts_of_every_view() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let base =
+        ["bench", "lightfield", "sphere.nrrd", "--tf", "ramp:0.2..0.9", "--views", "2,12", "--scale", "8"];
+    // Pixels of 4 cm on the screen: longer than two voxels.
+    let small = ["--shadings", "none", "--rounds", "1", "--projector-scale", "32", "--plot", "plots"];
+    let run = bench.run(&[&base[..], &small, &["--json"]].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("2 views of sphere have no anchors"), "{}", run.stderr);
+    let json = run.json();
+    assert_eq!(keys(&json), ["device", "full_frames", "rounds", "rows", "view_size"]);
+    let rows = json["rows"].as_array().unwrap();
+    let methods: Vec<_> = rows.iter().map(|row| (row["views"].as_u64(), row["method"].as_str())).collect();
+    assert_eq!(methods, [(Some(2), Some("each")), (Some(12), Some("each")), (Some(12), Some("anchors"))]);
+    let row = &rows[2];
+    assert_eq!(row["dssim"].as_array().unwrap().len(), 12);
+    assert!(row["dssim_worst"].as_f64() < Some(0.03) && row["dssim_mean"].as_f64() > Some(0.0), "{row}");
+    assert!(row["ms_per_frame"].as_f64() > row["anchor_ms"].as_f64(), "{row}");
+    let frames = json["full_frames"].as_array().unwrap();
+    let samples: Vec<_> = frames.iter().map(|frame| frame["samples"].as_u64()).collect();
+    assert!(samples.len() == 2 && samples[1] < samples[0] && samples[1] > Some(0), "{frames:?}");
+    assert!(
+        bench.path("plots/sphere-speed-up.svg").exists() && bench.path("plots/sphere-error.svg").exists()
+    );
+}
+
+#[test]
 fn bench_warp_traces_every_warp() {
     if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
         return;

@@ -5,6 +5,7 @@
 //!
 //! **Display space** has its origin in the middle of the screen, +X right, +Y up, +Z out of the screen towards the viewers, metres.
 
+pub mod anchors;
 pub mod calibration;
 mod error;
 mod fit;

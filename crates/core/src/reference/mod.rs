@@ -26,6 +26,7 @@ mod ray;
 mod renderer;
 mod shade;
 mod skip;
+mod slabs;
 mod stereo;
 mod value_sum;
 mod vector;

@@ -4,6 +4,7 @@
 
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "all of this crate is test code")]
 
+mod anchors;
 mod bounds;
 mod detail;
 mod device;

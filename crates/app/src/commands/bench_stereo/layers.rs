@@ -1,7 +1,7 @@
 //! Clearing and compositing over the number of layers (SP Fig. 11, VR Fig. 17).
 
 use super::eyes::Eyes;
-use crate::backend::{Engine, NoPair, Shot, median, milliseconds};
+use crate::backend::{Engine, Shot, Underived, median, milliseconds};
 use crate::failure::Failure;
 use crate::pairing::Pairing;
 use crate::progress::Bar;
@@ -65,11 +65,11 @@ pub(super) fn measure(
                         bytes: reports[0].bytes,
                     });
                 }
-                Err(NoPair::Refused(why)) => {
+                Err(Underived::Refused(why)) => {
                     let (side, form) = (eyes.size[0], pairing.form.name());
                     eprintln!("note: {volume} at {side}², {layers} layers: {form} refuses ({why}): left out");
                 }
-                Err(NoPair::Gpu(error)) => return Err(error.into()),
+                Err(Underived::Gpu(error)) => return Err(error.into()),
             }
         }
         bar.advance();

@@ -1,7 +1,7 @@
 //! One turn about the volume, every frame made in every way.
 
 use super::eyes::Eyes;
-use crate::backend::{Engine, NoPair, PairCast, Shot, milliseconds};
+use crate::backend::{Engine, PairCast, Shot, Underived, milliseconds};
 use crate::failure::Failure;
 use crate::pairing::Pairing;
 use crate::progress::Bar;
@@ -98,7 +98,7 @@ impl Tally {
                 self.bytes = self.bytes.max(pair.report.bytes);
                 Ok(Some(pictures(engine)?))
             }
-            Err(NoPair::Refused(why)) => {
+            Err(Underived::Refused(why)) => {
                 eprintln!(
                     "note: {name}: {} cannot make this pair ({why}): left out",
                     self.pairing.form.name()
@@ -106,7 +106,7 @@ impl Tally {
                 self.is_refused = true;
                 Ok(None)
             }
-            Err(NoPair::Gpu(error)) => Err(error.into()),
+            Err(Underived::Gpu(error)) => Err(error.into()),
         }
     }
 
@@ -143,7 +143,7 @@ fn fastest_pair(
     shot: Shot,
     views: [View; 2],
     pairing: &Pairing,
-) -> Result<PairCast, NoPair> {
+) -> Result<PairCast, Underived> {
     let mut fastest = engine.cast_pair(shot, views, pairing)?;
     for _ in 1..REPEATS {
         let pair = engine.cast_pair(shot, views, pairing)?;
