@@ -8,10 +8,10 @@ use super::context::Context;
 use super::gathered::Gathered;
 use super::lanes::Lanes;
 use super::lanes_exact::Exact;
-use super::ray::{PixelRay, Ray, pixels_of_box};
-use super::renderer::{Cast, Caster, Reads};
+use super::ray::Ray;
+use super::recorded::cast_rows;
+use super::renderer::{Cast, Caster};
 use crate::cast::{CastParameters, Classifier};
-use crate::image::Image;
 use crate::scene::Mode;
 use crate::view::{RayField, View};
 use crate::warp::{DIVIDED_PX, EmissionAbsorption, Layer, LayerError, LayerThresholds, Medium};
@@ -37,62 +37,36 @@ impl Caster {
         let mut layers = EmissionAbsorption::clear(view.size, thresholds.opacities().len())?;
         let context = self.context(parameters, aids);
         let cast = match parameters.classifier {
-            Classifier::ValueGradient => cast_rows::<ValueGradient>(&context, view, thresholds, &mut layers),
-            Classifier::PreIntegrated => cast_rows::<PreIntegrated>(&context, view, thresholds, &mut layers),
+            Classifier::ValueGradient => cast_view::<ValueGradient>(&context, view, thresholds, &mut layers),
+            Classifier::PreIntegrated => cast_view::<PreIntegrated>(&context, view, thresholds, &mut layers),
             Classifier::Value | Classifier::Isovalue => {
-                cast_rows::<Value>(&context, view, thresholds, &mut layers)
+                cast_view::<Value>(&context, view, thresholds, &mut layers)
             }
         };
         Ok((cast, layers))
     }
 }
 
-fn cast_rows<C: Classify>(
+fn cast_view<C: Classify>(
     context: &Context<'_>,
     view: &View,
     thresholds: &LayerThresholds,
     layers: &mut EmissionAbsorption,
 ) -> Cast {
-    let rays = RayField::new(view, context.parameters.texture_from_world);
     let world_rays = RayField::new(view, DAffine3::IDENTITY);
-    let dims = context.sampler.dims().as_dvec3();
-    let [columns, rows] = pixels_of_box(view, context.parameters);
-    let [width, height] = view.size;
-    let mut image = Image::transparent(width, height);
-    let mut reads = vec![Reads::default(); image.color.len()];
-    let (width, layer_count) = (width as usize, layers.layer_count());
-    let pictured = image
-        .color
-        .par_chunks_mut(width)
-        .zip(image.depth_m.par_chunks_mut(width))
-        .zip(reads.par_chunks_mut(width))
-        .zip(layers.layers_mut().par_chunks_mut(width * layer_count));
-    pictured.enumerate().filter(|(row, _)| rows.contains(row)).for_each(
-        |(row, (((color, depth_m), reads), layers))| {
-            for column in columns.clone() {
-                let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
-                let ray = PixelRay::new(&rays, context.parameters, x, y);
-                if ray.sample_count == 0 {
-                    continue;
-                }
-                let recorder = Recorder {
-                    thresholds: thresholds.opacities(),
-                    layers: &mut layers[column * layer_count..][..layer_count],
-                    metres_per_depth: world_rays.at(x, y).1.length(),
-                    pixel_width_m: |depth_m: f64| {
-                        (world_rays.origin_dx + depth_m * world_rays.direction_dx).length()
-                    },
-                    gathered: Gathered::nothing(()),
-                    span_m: None,
-                };
-                let pixel = cast_ray::<C>(context, &Ray::new((), dims, &[ray]), recorder);
-                color[column] = pixel.color();
-                depth_m[column] = f64::from(pixel.depth_m) as f32;
-                reads[column] = pixel.reads();
-            }
-        },
-    );
-    Cast::new(image, reads)
+    let (width, layer_count) = (view.size[0] as usize, layers.layer_count());
+    let rows = layers.layers_mut().par_chunks_mut(width * layer_count);
+    cast_rows(context, view, rows, |layers, column, [x, y], ray| {
+        let recorder = Recorder {
+            thresholds: thresholds.opacities(),
+            layers: &mut layers[column * layer_count..][..layer_count],
+            metres_per_depth: world_rays.at(x, y).1.length(),
+            pixel_width_m: |depth_m: f64| (world_rays.origin_dx + depth_m * world_rays.direction_dx).length(),
+            gathered: Gathered::nothing(()),
+            span_m: None,
+        };
+        cast_ray::<C>(context, ray, recorder)
+    })
 }
 
 fn cast_ray<C: Classify>(

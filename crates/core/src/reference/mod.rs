@@ -23,6 +23,7 @@ mod lut;
 mod magnitude;
 mod oracle;
 mod ray;
+mod recorded;
 mod renderer;
 mod shade;
 mod skip;

@@ -8,13 +8,13 @@ use super::context::Context;
 use super::gathered::Gathered;
 use super::lanes::Lanes;
 use super::lanes_exact::Exact;
-use super::ray::{PixelRay, Ray, pixels_of_box};
-use super::renderer::{Cast, Caster, Reads};
+use super::ray::Ray;
+use super::recorded::cast_rows;
+use super::renderer::{Cast, Caster};
 use crate::cast::{CastParameters, Classifier};
-use crate::image::Image;
 use crate::lightfield::anchors::{AnchorError, DepthSlabs, SlabPicture, SlabWriter};
 use crate::scene::Mode;
-use crate::view::{RayField, View};
+use crate::view::View;
 use glam::Vec4;
 use rayon::prelude::*;
 
@@ -36,56 +36,28 @@ impl Caster {
         }
         let context = self.context(parameters, aids);
         Ok(match parameters.classifier {
-            Classifier::ValueGradient => cast_rows::<ValueGradient>(&context, view, slabs),
-            Classifier::PreIntegrated => cast_rows::<PreIntegrated>(&context, view, slabs),
-            Classifier::Value | Classifier::Isovalue => cast_rows::<Value>(&context, view, slabs),
+            Classifier::ValueGradient => cast_view::<ValueGradient>(&context, view, slabs),
+            Classifier::PreIntegrated => cast_view::<PreIntegrated>(&context, view, slabs),
+            Classifier::Value | Classifier::Isovalue => cast_view::<Value>(&context, view, slabs),
         })
     }
 }
 
-fn cast_rows<C: Classify>(context: &Context<'_>, view: &View, slabs: &DepthSlabs) -> (Cast, SlabPicture) {
-    let rays = RayField::new(view, context.parameters.texture_from_world);
-    let dims = context.sampler.dims().as_dvec3();
-    let [columns, rows] = pixels_of_box(view, context.parameters);
-    let [width, height] = view.size;
-    let mut image = Image::transparent(width, height);
-    let mut reads = vec![Reads::default(); image.color.len()];
+fn cast_view<C: Classify>(context: &Context<'_>, view: &View, slabs: &DepthSlabs) -> (Cast, SlabPicture) {
     let mut picture = SlabPicture::clear(view.size, slabs.count);
-    let width = width as usize;
+    let [width, height] = view.size.map(|side| side as usize);
     // The cells of a row of pixels, slab by slab.
-    let mut cells: Vec<Vec<&mut [u32]>> = (0..height).map(|_| Vec::new()).collect();
-    for (line, row) in picture.cells.chunks_mut(width).zip((0..height as usize).cycle()) {
-        cells[row].push(line);
+    let mut rows: Vec<Vec<&mut [u32]>> = (0..height).map(|_| Vec::new()).collect();
+    for (line, row) in picture.cells.chunks_mut(width).zip((0..height).cycle()) {
+        rows[row].push(line);
     }
-    let pictured = image
-        .color
-        .par_chunks_mut(width)
-        .zip(image.depth_m.par_chunks_mut(width))
-        .zip(reads.par_chunks_mut(width))
-        .zip(cells);
-    pictured.enumerate().filter(|(row, _)| rows.contains(row)).for_each(
-        |(row, (((color, depth_m), reads), mut cells))| {
-            for column in columns.clone() {
-                let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
-                let ray = PixelRay::new(&rays, context.parameters, x, y);
-                if ray.sample_count == 0 {
-                    continue;
-                }
-                let cells = cells.iter_mut().map(|line| &mut line[column]).collect();
-                let recorder = Recorder {
-                    slabs,
-                    writer: SlabWriter::new(cells),
-                    gathered: Gathered::nothing(()),
-                    slab: None,
-                };
-                let pixel = cast_ray::<C>(context, &Ray::new((), dims, &[ray]), recorder);
-                color[column] = pixel.color();
-                depth_m[column] = f64::from(pixel.depth_m) as f32;
-                reads[column] = pixel.reads();
-            }
-        },
-    );
-    (Cast::new(image, reads), picture)
+    let cast = cast_rows(context, view, rows.into_par_iter(), |lines, column, _, ray| {
+        let cells = lines.iter_mut().map(|line| &mut line[column]).collect();
+        let recorder =
+            Recorder { slabs, writer: SlabWriter::new(cells), gathered: Gathered::nothing(()), slab: None };
+        cast_ray::<C>(context, ray, recorder)
+    });
+    (cast, picture)
 }
 
 fn cast_ray<C: Classify>(

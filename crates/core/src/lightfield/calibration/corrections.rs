@@ -1,5 +1,6 @@
 //! What is corrected of each projector's picture after it was rendered.
 
+use super::ids::{IdError, place_of};
 use super::{ColorTable, GeometryWarp, NotATable, NotAWarp};
 use crate::image::RgbImage;
 use crate::lightfield::projectors::ProjectorArray;
@@ -38,22 +39,9 @@ pub enum CorrectionError {
     /// Not JSON, a field missing or unknown, another version.
     #[error(transparent)]
     Form(#[from] DisplayError),
-    /// Corrections of what the display does not have.
-    #[error("projectors[{index}].id is {id}: the display has no projector of that id")]
-    UnknownId {
-        /// Counted from 0.
-        index: usize,
-        /// The id.
-        id: u32,
-    },
-    /// Two corrections of one projector.
-    #[error("projectors[{index}].id is {id}, as of another entry: ids must differ")]
-    RepeatedId {
-        /// Of the second entry, counted from 0.
-        index: usize,
-        /// The id.
-        id: u32,
-    },
+    /// An entry that is of no projector of the display, or of one that another is of.
+    #[error(transparent)]
+    Id(#[from] IdError),
     /// A warp that is none.
     #[error("projectors[{index}].warp: {source}")]
     Warp {
@@ -86,13 +74,7 @@ impl Corrections {
         error::check_version(corrections.wheatstone_corrections, VERSION)?;
         for (index, correction) in corrections.projectors.iter().enumerate() {
             correction.check(index)?;
-            let id = correction.id;
-            if !display.projectors().iter().any(|projector| projector.id == id) {
-                return Err(CorrectionError::UnknownId { index, id });
-            }
-            if corrections.projectors[..index].iter().any(|before| before.id == id) {
-                return Err(CorrectionError::RepeatedId { index, id });
-            }
+            place_of(|index| corrections.projectors[index].id, index, display)?;
         }
         Ok(corrections)
     }

@@ -1,11 +1,11 @@
 //! Measurements of a display, and the description that agrees with them best.
 
 use super::fit::{Correspondence, Fit, FitError};
-use crate::lightfield::projectors::{Description, Projector, ProjectorArray};
+use super::ids::{IdError, place_of};
+use crate::lightfield::projectors::{Description, ProjectorArray};
 use crate::lightfield::{DisplayError, error};
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 use thiserror::Error;
 
 /// Where beams of a display's projectors pass, as measured: `docs/displays.md` has an example.
@@ -54,22 +54,9 @@ pub enum CalibrationError {
     /// What is no text of measurements, or a display that is none.
     #[error(transparent)]
     Display(#[from] DisplayError),
-    /// Measurements of what the display does not have.
-    #[error("projectors[{index}].id is {id}: the display has no projector of that id")]
-    UnknownId {
-        /// Counted from 0.
-        index: usize,
-        /// The id.
-        id: u32,
-    },
-    /// Measurements of one projector in two places.
-    #[error("projectors[{index}].id is {id}, as of another entry: ids must differ")]
-    RepeatedId {
-        /// Of the second entry, counted from 0.
-        index: usize,
-        /// The id.
-        id: u32,
-    },
+    /// An entry that is of no projector of the display, or of one that another is of.
+    #[error(transparent)]
+    Id(#[from] IdError),
     /// Measurements that no projector agrees with.
     #[error("projector {id}: {source}")]
     Fit {
@@ -101,19 +88,12 @@ impl Measurements {
     pub fn fit(&self, display: &ProjectorArray) -> Result<Calibrated, CalibrationError> {
         let description = display.description();
         let mut projectors = description.projectors.clone();
-        let (mut fits, mut ids) = (Vec::new(), BTreeSet::new());
+        let mut fits = Vec::new();
         for (index, measured) in self.projectors.iter().enumerate() {
-            let id = measured.id;
-            if !ids.insert(id) {
-                return Err(CalibrationError::RepeatedId { index, id });
-            }
-            let described: &mut Projector = projectors
-                .iter_mut()
-                .find(|projector| projector.id == id)
-                .ok_or(CalibrationError::UnknownId { index, id })?;
+            let described = &mut projectors[place_of(|index| self.projectors[index].id, index, display)?];
             let beams: Vec<Correspondence> = measured.correspondences.iter().map(Into::into).collect();
             let fit = Fit::of(described, description.image_size_px, &beams)
-                .map_err(|source| CalibrationError::Fit { id, source })?;
+                .map_err(|source| CalibrationError::Fit { id: measured.id, source })?;
             *described = fit.projector;
             fits.push(fit);
         }
