@@ -6,7 +6,7 @@ use crate::layers::{PaddedRows, copy_layers};
 use crate::pipeline::KernelFiles;
 use crate::readback::{read_buffer, read_texture};
 use crate::skip::VoxelTexture;
-use crate::volume::{GpuVolume, TexelFormat, byte_size, check_size, extent};
+use crate::volume::{GpuVolume, TexelFormat, byte_size, check_size, voxel_texture};
 use bytemuck::{Pod, Zeroable};
 use half::f16;
 use wheatstone_core::gradient_map::GradientDepth;
@@ -238,18 +238,7 @@ impl<'a> GradientPass<'a> {
         let row_bytes =
             (width * format.byte_size()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
         let slab_slices = (SLAB_BYTES / (row_bytes * height)).clamp(1, depth);
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("gradient map"),
-            size: extent(self.volume.dims),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D3,
-            format: format.wgpu(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_DST
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let texture = voxel_texture(gpu, "gradient map", self.volume.dims, format.wgpu());
         let slab = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("slab of gradients"),
             size: (row_bytes * height * slab_slices) as u64,

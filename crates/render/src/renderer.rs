@@ -119,6 +119,12 @@ impl Prepared {
         &self.parameters
     }
 
+    /// The same with a kernel that records what rays pass.
+    fn recording(self, variant: Variant) -> Self {
+        let iterations_per_sample = self.iterations_per_sample + cast_pass::ITERATIONS_OF_RECORDING;
+        Self { variant, iterations_per_sample, ..self }
+    }
+
     /// Whether casts keep layers of emission and absorption beside the picture.
     pub fn keeps_layers(&self) -> bool {
         self.variant.keeps_layers()
@@ -276,18 +282,7 @@ impl Renderer {
         let variant = prepared.variant.with_layers();
         self.casts.pipeline(gpu, variant)?;
         let cast_uniform = prepared.cast_uniform.with_layers(opacities);
-        let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
-        gpu.check()?;
-        Ok(Prepared {
-            parameters: prepared.parameters.clone(),
-            variant,
-            iterations_per_sample: prepared.iterations_per_sample + cast_pass::ITERATIONS_OF_RECORDING,
-            cast_uniform,
-            view_uniform,
-            frame,
-            volume: prepared.volume.clone(),
-            ..*prepared
-        })
+        Ok(self.reframed(gpu, prepared, prepared.parameters.clone(), cast_uniform)?.recording(variant))
     }
 
     /// The same of a composite, whose rays leave what they pass in slabs of depth beside the picture, in targets that have room for that.
@@ -300,18 +295,7 @@ impl Renderer {
         let termination_alpha = prepared.parameters.termination_alpha.min(MOST_ANCHOR_ALPHA);
         let parameters = CastParameters { termination_alpha, ..prepared.parameters.clone() };
         let cast_uniform = CastUniform { termination_alpha, ..prepared.cast_uniform };
-        let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
-        gpu.check()?;
-        Ok(Prepared {
-            parameters,
-            variant,
-            iterations_per_sample: prepared.iterations_per_sample + cast_pass::ITERATIONS_OF_RECORDING,
-            cast_uniform,
-            view_uniform,
-            frame,
-            volume: prepared.volume.clone(),
-            ..*prepared
-        })
+        Ok(self.reframed(gpu, prepared, parameters, cast_uniform)?.recording(variant))
     }
 
     /// The same of a composite, cast behind what targets hold: each ray goes on with what its pixel has gathered. For the slabs of
@@ -326,17 +310,8 @@ impl Renderer {
         assert_eq!(prepared.parameters.mode, Mode::Composite, "only composites are cast behind anything");
         let variant = prepared.variant.behind();
         self.casts.pipeline(gpu, variant)?;
-        let (view_uniform, frame) = self.frame(gpu, &prepared.cast_uniform);
-        gpu.check()?;
-        Ok(Prepared {
-            parameters: prepared.parameters.clone(),
-            variant,
-            listing: None,
-            view_uniform,
-            frame,
-            volume: prepared.volume.clone(),
-            ..*prepared
-        })
+        let same = self.reframed(gpu, prepared, prepared.parameters.clone(), prepared.cast_uniform)?;
+        Ok(Prepared { variant, listing: None, ..same })
     }
 
     /// The same, cast with rays that leap to what the last picture saw first ([`Renderer::render_after`]) into targets that have room
@@ -355,17 +330,8 @@ impl Renderer {
             (prepared.variant, prepared.listing)
         };
         self.casts.pipeline(gpu, variant)?;
-        let (view_uniform, frame) = self.frame(gpu, &prepared.cast_uniform);
-        gpu.check()?;
-        Ok(Prepared {
-            parameters: prepared.parameters.clone(),
-            variant,
-            listing,
-            view_uniform,
-            frame,
-            volume: prepared.volume.clone(),
-            ..*prepared
-        })
+        let same = self.reframed(gpu, prepared, prepared.parameters.clone(), prepared.cast_uniform)?;
+        Ok(Prepared { variant, listing, ..same })
     }
 
     /// The same, cast with steps so many times as long.
@@ -382,16 +348,21 @@ impl Renderer {
         let parameters = CastParameters { sampling_factor, ..prepared.parameters.clone() };
         let skip_margin = prepared.skip_block.map_or(0.0, |block| leap::skip_margin(&parameters, block));
         let cast_uniform = CastUniform { sampling_factor, skip_margin, ..prepared.cast_uniform };
+        self.reframed(gpu, prepared, parameters, cast_uniform)
+    }
+
+    /// The same with other parameters and their uniform.
+    fn reframed(
+        &self,
+        gpu: &Gpu,
+        prepared: &Prepared,
+        parameters: CastParameters,
+        cast_uniform: CastUniform,
+    ) -> Result<Prepared, GpuError> {
         let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
         gpu.check()?;
-        Ok(Prepared {
-            parameters,
-            cast_uniform,
-            view_uniform,
-            frame,
-            volume: prepared.volume.clone(),
-            ..*prepared
-        })
+        let volume = prepared.volume.clone();
+        Ok(Prepared { parameters, cast_uniform, view_uniform, frame, volume, ..*prepared })
     }
 
     /// The buffer of a view and the group that it makes with some parameters.

@@ -270,6 +270,27 @@ pub(crate) fn check_size(
     })
 }
 
+/// A texture of voxels or blocks that is written, sampled and read back. The caller checks sizes and the device.
+pub(crate) fn voxel_texture(
+    gpu: &Gpu,
+    label: &str,
+    dims: [usize; 3],
+    format: wgpu::TextureFormat,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: extent(dims),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_DST
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
 pub(crate) fn extent([width, height, depth]: [usize; 3]) -> wgpu::Extent3d {
     wgpu::Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: depth as u32 }
 }

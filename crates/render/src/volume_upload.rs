@@ -3,7 +3,7 @@
 use crate::gpu::{Gpu, GpuError};
 use crate::pace::Pace;
 use crate::rows::Rows;
-use crate::volume::{GpuVolume, TexelFormat, check_size, extent};
+use crate::volume::{GpuVolume, TexelFormat, check_size, voxel_texture};
 use std::time::{Duration, Instant};
 use wheatstone_core::volume::{Encoding, Volume};
 
@@ -58,18 +58,7 @@ impl VolumeUpload {
     pub fn begin(gpu: &Gpu, volume: &Volume, format: TexelFormat) -> Result<Self, GpuError> {
         let dims = volume.grid().dims();
         check_size(gpu.capabilities(), dims, format)?;
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("volume"),
-            size: extent(dims),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D3,
-            format: format.wgpu(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_DST
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let texture = voxel_texture(gpu, "volume", dims, format.wgpu());
         gpu.check()?;
         Ok(Self {
             volume: GpuVolume::of_texture(&texture, volume, format),

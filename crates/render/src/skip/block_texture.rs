@@ -1,7 +1,7 @@
 //! 3D textures with one texel per block, or per block and octant.
 
 use crate::gpu::{Capabilities, Gpu, GpuError};
-use crate::volume::extent;
+use crate::volume::voxel_texture;
 
 /// Makes a texture that is copied to and read texel by texel.
 ///
@@ -14,18 +14,7 @@ pub(super) fn block_texture(
     format: wgpu::TextureFormat,
 ) -> Result<wgpu::Texture, GpuError> {
     check_size(gpu.capabilities(), dims, bytes_per_block(format))?;
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: extent(dims),
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D3,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_DST
-            | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let texture = voxel_texture(gpu, label, dims, format);
     gpu.check()?;
     Ok(texture)
 }
