@@ -18,7 +18,7 @@ pub(crate) struct StandArgs {
     #[arg(long, value_name = "M", default_value = "0", value_parser = spec::within(-1000.0..=1000.0), allow_negative_numbers = true)]
     before_screen: f64,
 
-    /// Write N pictures, turning by 360/N degrees from one to the next.
+    /// Write N pictures, numbered from 0000, turning by 360/N degrees from one to the next.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
     turntable: Option<u32>,
 }
@@ -37,19 +37,24 @@ pub(crate) struct Stand {
 }
 
 impl StandArgs {
-    /// Where a volume stands before an eye so far from the screen, metres. Its visible corners are in a world in which its longest side
+    /// Whether pictures of a turntable are asked for, be it of one.
+    pub(crate) fn is_turning(&self) -> bool {
+        self.turntable.is_some()
+    }
+
+    /// Where a volume stands before somebody who is so far from the screen, metres. Its visible corners are in a world in which its longest side
     /// is 1 m; `largest_scale` tells by how much points may be scaled about a place before the screen to be seen in full.
     pub(crate) fn resolve(
         &self,
         aim: &AimArgs,
         corners: [DVec3; 8],
-        eye_from_screen_m: f64,
+        (seen_by, from_screen_m): (&str, f64),
         largest_scale: impl FnOnce(&[DVec3], f64) -> f64,
     ) -> Result<Stand, Failure> {
         let before_screen_m = self.before_screen;
-        if before_screen_m >= eye_from_screen_m {
+        if before_screen_m >= from_screen_m {
             return Err(Failure::input(format!(
-                "--before-screen must be less than the distance of the viewer, {eye_from_screen_m:.4} m"
+                "--before-screen must be less than the distance of the {seen_by}, {from_screen_m:.4} m"
             )));
         }
         let frames = self.turntable.unwrap_or(1);
@@ -64,7 +69,7 @@ impl StandArgs {
         let before_m = points.iter().map(|point| before_screen_m + volume_size_m * point.z);
         let (least_m, most_m) =
             before_m.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), z| (lo.min(z), hi.max(z)));
-        let is_turning = self.turntable.is_some();
+        let is_turning = self.is_turning();
         Ok(Stand { volume_size_m, reach_m: least_m..most_m, before_screen_m, turned, is_turning })
     }
 }

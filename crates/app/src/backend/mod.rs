@@ -481,6 +481,24 @@ fn median_ms<E>(mut again: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
     Ok(median(&times.collect::<Result<Vec<_>, _>>()?))
 }
 
+/// Opens a renderer and makes something with it; if any may be chosen and the GPU fails meanwhile, all of it by the CPU.
+pub(crate) fn make_on<'v, T>(
+    choice: BackendChoice,
+    open: impl Fn(BackendChoice) -> Result<Engine<'v>, Failure>,
+    mut make: impl FnMut(&mut Engine<'v>) -> Result<T, Failure>,
+) -> Result<(Engine<'v>, T), Failure> {
+    let mut engine = open(choice)?;
+    let made = match make(&mut engine) {
+        Err(Failure::Gpu(error)) if choice == BackendChoice::Auto => {
+            note_fallback(&error);
+            engine = open(BackendChoice::Cpu)?;
+            make(&mut engine)?
+        }
+        made => made?,
+    };
+    Ok((engine, made))
+}
+
 /// Says on standard error that the CPU renderer takes over.
 pub(crate) fn note_fallback(error: &GpuError) {
     eprintln!("note: the GPU cannot be used ({error}): using the CPU renderer");

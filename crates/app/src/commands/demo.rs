@@ -1,6 +1,6 @@
 //! `demo`: the shipped brain, from file to pictures for one eye and two.
 
-use crate::backend::{BackendChoice, Engine, Job, milliseconds, note_fallback};
+use crate::backend::{BackendChoice, Engine, Job, make_on, milliseconds};
 use crate::camera::CameraArgs;
 use crate::failure::Failure;
 use crate::look::{Look, LookArgs};
@@ -115,15 +115,11 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let loaded = shipped::brain()?;
     let volume = &loaded.volume;
     let plans = SHOTS.iter().map(|shot| plan(shot, args.size, volume)).collect::<Result<Vec<_>, _>>()?;
-    let mut engine = open(args.backend, &plans, volume)?;
-    let taken = match take_all(&mut engine, &plans, folder) {
-        Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
-            note_fallback(&error);
-            engine = open(BackendChoice::Cpu, &plans, volume)?;
-            take_all(&mut engine, &plans, folder)?
-        }
-        taken => taken?,
-    };
+    let (engine, taken) = make_on(
+        args.backend,
+        |choice| open(choice, &plans, volume),
+        |engine| take_all(engine, &plans, folder),
+    )?;
     let sheet = contact_sheet(&plans, &taken, &engine);
     let index = folder.join("index.html");
     write_atomically(&index, |writer| writer.write_all(sheet.as_bytes()))?;

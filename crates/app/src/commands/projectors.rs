@@ -1,6 +1,6 @@
 //! `projectors`: a volume to the frames of a display of projectors.
 
-use crate::backend::{BackendChoice, Engine, Job, Leaping, median, milliseconds, note_fallback};
+use crate::backend::{BackendChoice, Engine, Job, Leaping, make_on, median, milliseconds};
 use crate::camera::AimArgs;
 use crate::display::ArrayArgs;
 use crate::failure::Failure;
@@ -132,9 +132,9 @@ pub(crate) fn run(args: &ProjectorsArgs) -> Result<(), Failure> {
     loaded.volume.fill_non_finite(look.settings.window.lo());
     let volume = &loaded.volume;
     let parameters = CastParameters::new(&look.settings, &args.aim.placement(volume));
-    let viewer_m = array.virtual_viewer_m().z;
+    let viewer = ("viewer", array.virtual_viewer_m().z);
     let corners = parameters.visible_corners_world();
-    let stand = args.stand.resolve(&args.aim, corners, viewer_m, |points, before_m| {
+    let stand = args.stand.resolve(&args.aim, corners, viewer, |points, before_m| {
         array.largest_scale(points.iter().copied(), before_m)
     })?;
     let stage = Stage { array, stand, resolution, corrections };
@@ -143,15 +143,11 @@ pub(crate) fn run(args: &ProjectorsArgs) -> Result<(), Failure> {
         ResolutionName::Matched => volume.coarser_levels(),
         ResolutionName::Full => Vec::new(),
     };
-    let mut engine = args.open(args.backend, &stage, volume)?;
-    let made = match args.make(&mut engine, &stage, &coarser, &parameters, &skipping) {
-        Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
-            note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, &stage, volume)?;
-            args.make(&mut engine, &stage, &coarser, &parameters, &skipping)?
-        }
-        made => made?,
-    };
+    let (engine, made) = make_on(
+        args.backend,
+        |choice| args.open(choice, &stage, volume),
+        |engine| args.make(engine, &stage, &coarser, &parameters, &skipping),
+    )?;
     args.report(&stage, &loaded, &look, &engine, &made)
 }
 

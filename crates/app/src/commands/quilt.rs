@@ -1,9 +1,9 @@
 //! `quilt`: a volume to the views of a display behind lenses.
 
 use crate::backend::{
-    AnchorCast, BackendChoice, Engine, Job, Leaping, Shot, Underived, median, milliseconds, note_fallback,
+    AnchorCast, BackendChoice, Engine, Job, Leaping, Shot, Underived, make_on, median, milliseconds,
 };
-use crate::camera::{AimArgs, turn_deg};
+use crate::camera::AimArgs;
 use crate::display::{Display, DisplayArgs, read_calibration};
 use crate::failure::Failure;
 use crate::look::{Look, LookArgs};
@@ -14,9 +14,9 @@ use crate::progress::Bar;
 use crate::quilt_file::{QuiltPaths, metadata};
 use crate::skipping::{SkipArgs, SkipName, Skipping};
 use crate::spec;
+use crate::stand::{Stand, StandArgs};
 use crate::volume_args::VolumeArgs;
 use clap::{Args, ValueEnum};
-use glam::{DAffine3, DVec3};
 use serde_json::json;
 use std::path::PathBuf;
 use wheatstone_core::cast::CastParameters;
@@ -45,21 +45,12 @@ pub(crate) struct QuiltArgs {
     #[arg(long, value_enum, default_value_t = SamplingName::Middles)]
     sampling: SamplingName,
 
-    /// Length of the volume's longest side at the display, metres [default: as much as the screen shows in full].
-    #[arg(long, value_name = "M", value_parser = spec::within(1e-4..=1000.0), allow_negative_numbers = true)]
-    volume_size: Option<f64>,
-
-    /// How far before the screen the volume's centre is, metres; negative behind it.
-    #[arg(long, value_name = "M", default_value = "0", value_parser = spec::within(-1000.0..=1000.0), allow_negative_numbers = true)]
-    before_screen: f64,
+    #[command(flatten)]
+    stand: StandArgs,
 
     /// Pixels of a view by which things may move from one view to the next before a warning tells of ghosts.
     #[arg(long, value_name = "PIXELS", default_value = "2", value_parser = spec::within(0.1..=1000.0), allow_negative_numbers = true)]
     most_disparity: f64,
-
-    /// Write N quilts, numbered from 0000 before the suffix, turning by 360/N degrees from one to the next.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), allow_negative_numbers = true)]
-    turntable: Option<u32>,
 
     /// Write the picture for the panel as well, beside the quilt, by the display's calibration (visual.json).
     #[arg(long, value_name = "CALIBRATION.json")]
@@ -130,11 +121,7 @@ struct Stage {
     display: QuiltDisplay,
     lenses: Option<Lenticular>,
     paths: QuiltPaths,
-    /// Length of the volume's longest side, metres.
-    volume_size_m: f64,
-    /// How far the volume reaches behind and before the screen in any quilt, metres.
-    behind_m: f64,
-    before_m: f64,
+    stand: Stand,
     /// What views are derived from; nothing where each is cast.
     anchors: Option<AnchorRequest>,
 }
@@ -163,77 +150,41 @@ pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
     let Display::Lenses(display) = args.display.resolve(lenses.as_ref())? else {
         return Err(Failure::input("quilts are for displays behind lenses: this one has projectors"));
     };
-    if args.before_screen >= display.focal_distance_m {
-        return Err(Failure::input(format!(
-            "--before-screen must be less than the distance of the cameras, {:.4} m",
-            display.focal_distance_m
-        )));
-    }
     let paths = QuiltPaths::new(&args.output, &display)?;
-    check_writable(&paths.quilt(args.turntable.map(|_| 0)), "png")?;
+    check_writable(&paths.quilt(args.stand.is_turning().then_some(0)), "png")?;
     let mut loaded = args.volume.load()?;
     let look = args.look.resolve(&loaded.volume)?;
     loaded.volume.fill_non_finite(look.settings.window.lo());
     let volume = &loaded.volume;
     let parameters = CastParameters::new(&look.settings, &args.aim.placement(volume));
-    let stage = args.stage(display, lenses, paths, anchors, &parameters)?;
+    let corners = parameters.visible_corners_world();
+    let cameras = ("cameras", display.focal_distance_m);
+    let stand = args.stand.resolve(&args.aim, corners, cameras, |points, before_m| {
+        display.largest_scale(points.iter().copied(), before_m)
+    })?;
+    let stage = Stage { display, lenses, paths, stand, anchors };
     args.warn_of_ghosts(&stage);
-    let mut engine = args.open(args.backend, &stage, volume)?;
-    let made = match args.make(&mut engine, &stage, &parameters, &skipping) {
-        Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
-            note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, &stage, volume)?;
-            args.make(&mut engine, &stage, &parameters, &skipping)?
-        }
-        made => made?,
-    };
+    let (engine, made) = make_on(
+        args.backend,
+        |choice| args.open(choice, &stage, volume),
+        |engine| args.make(engine, &stage, &parameters, &skipping),
+    )?;
     args.report(&stage, &loaded, &look, &engine, &made)
 }
 
 impl QuiltArgs {
-    fn frames(&self) -> u32 {
-        self.turntable.unwrap_or(1)
-    }
-
-    /// The volume turned as in a frame, about its centre, its longest side of length 1.
-    fn turned(&self, frame: u32) -> DAffine3 {
-        self.aim.orbit(turn_deg(frame, self.frames()), 0.0).view_from_world()
-    }
-
-    fn stage(
-        &self,
-        display: QuiltDisplay,
-        lenses: Option<Lenticular>,
-        paths: QuiltPaths,
-        anchors: Option<AnchorRequest>,
-        parameters: &CastParameters,
-    ) -> Result<Stage, Failure> {
-        let corners = parameters.visible_corners_world();
-        let turned: Vec<DVec3> = (0..self.frames())
-            .flat_map(|frame| corners.map(|corner| self.turned(frame).transform_point3(corner)))
-            .collect();
-        let fitting = display.largest_scale(turned.iter().copied(), self.before_screen);
-        let volume_size_m = self.volume_size.unwrap_or(fitting);
-        if !volume_size_m.is_finite() {
-            return Err(Failure::input("nothing of the volume is visible: --volume-size is needed"));
-        }
-        let toward_m = turned.iter().map(|corner| self.before_screen + volume_size_m * corner.z);
-        let (least_m, most_m) =
-            toward_m.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), z| (lo.min(z), hi.max(z)));
-        Ok(Stage { display, lenses, paths, volume_size_m, behind_m: -least_m, before_m: most_m, anchors })
-    }
-
     fn warn_of_ghosts(&self, stage: &Stage) {
         let limits = stage.display.depth_range(self.sampling.sampling(), self.most_disparity);
-        if stage.before_m <= limits.before_m && stage.behind_m <= limits.behind_m {
+        let [behind_m, before_m] = [-stage.stand.reach_m.start, stage.stand.reach_m.end];
+        if before_m <= limits.before_m && behind_m <= limits.behind_m {
             return;
         }
         let reach = |metres: f64, side: &str| format!("{:.1} mm {side}", metres * 1e3);
         eprintln!(
             "warning: the volume reaches from {} to {} the screen; beyond {} and {} things move by more than {} pixels \
              from view to view, which is seen as ghosts: --volume-size makes it smaller",
-            reach(stage.behind_m, "behind"),
-            reach(stage.before_m, "before"),
+            reach(behind_m, "behind"),
+            reach(before_m, "before"),
             reach(limits.behind_m, "behind"),
             reach(limits.before_m, "before"),
             self.most_disparity,
@@ -248,7 +199,7 @@ impl QuiltArgs {
     ) -> Result<Engine<'v>, Failure> {
         let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
         let job = Job {
-            rays: rays(&stage.display) * u64::from(self.frames()),
+            rays: rays(&stage.display) * u64::from(stage.stand.pictures()),
             samples_per_ray: longest as f64 * self.look.sampling_factor,
             needs_gpu: stage.anchors.is_some(),
         };
@@ -273,11 +224,11 @@ impl QuiltArgs {
             outputs: Vec::new(),
         };
         let exif = metadata(&stage.display)?;
-        let bar = Bar::new("views", u64::from(self.frames() * stage.display.view_count()));
-        for frame in 0..self.frames() {
-            let views = self.views_of(stage, frame);
+        let bar = Bar::new("views", u64::from(stage.stand.pictures() * stage.display.view_count()));
+        for (turn, display_from_world) in (0..).zip(stage.stand.displays_from_world()) {
+            let views = stage.display.views(self.sampling.sampling(), display_from_world);
             let quilt = self.cast(engine, shot, stage, &views, &mut made, &bar)?;
-            let number = self.turntable.map(|_| frame);
+            let number = stage.stand.is_turning().then_some(turn);
             let path = stage.paths.quilt(number);
             write_png_with_exif(&path, &quilt, self.bits, exif.clone())?;
             made.outputs.push(path);
@@ -289,14 +240,6 @@ impl QuiltArgs {
             }
         }
         Ok(made)
-    }
-
-    /// The views of a frame.
-    fn views_of(&self, stage: &Stage, frame: u32) -> Vec<View> {
-        let display_from_world = DAffine3::from_translation(DVec3::Z * self.before_screen)
-            * DAffine3::from_scale(DVec3::splat(stage.volume_size_m))
-            * self.turned(frame);
-        stage.display.views(self.sampling.sampling(), display_from_world)
     }
 
     /// The quilt of some views, view by view.
@@ -342,11 +285,11 @@ impl QuiltArgs {
         engine: &Engine<'_>,
         made: &Made,
     ) -> Result<(), Failure> {
-        let Stage { display, volume_size_m, .. } = stage;
+        let Stage { display, stand, .. } = stage;
         let dims = loaded.volume.grid().dims();
-        let frames = f64::from(self.frames());
-        let derived_ms = made.views_ms.iter().sum::<f64>() / frames;
-        let anchors_ms = made.anchors_ms / frames;
+        let quilts = f64::from(stand.pictures());
+        let derived_ms = made.views_ms.iter().sum::<f64>() / quilts;
+        let anchors_ms = made.anchors_ms / quilts;
         let quilt_ms = anchors_ms + derived_ms;
         let method = if made.anchors.is_some() { "anchors" } else { "each" };
         let settings = &look.settings;
@@ -364,9 +307,9 @@ impl QuiltArgs {
                 "views": display.view_count(),
                 "tile_size": display.tile_size_px(),
                 "sampling": self.sampling.name(),
-                "volume_size_m": volume_size_m,
-                "behind_screen_m": stage.behind_m,
-                "before_screen_m": stage.before_m,
+                "volume_size_m": stand.volume_size_m,
+                "behind_screen_m": -stand.reach_m.start,
+                "before_screen_m": stand.reach_m.end,
                 "behind_limit_m": limits.behind_m.is_finite().then_some(limits.behind_m),
                 "before_limit_m": limits.before_m,
                 "mode": look.mode.name(),

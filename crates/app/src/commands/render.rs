@@ -1,8 +1,7 @@
 //! `render`: a volume file to a picture.
 
 use crate::backend::{
-    BackendChoice, Engine, GradientMapSize, Job, Leaping, Shot, Underived, median, milliseconds,
-    note_fallback,
+    BackendChoice, Engine, GradientMapSize, Job, Leaping, Shot, Underived, make_on, median, milliseconds,
 };
 use crate::camera::{CameraArgs, Stereo, turn_deg};
 use crate::failure::Failure;
@@ -126,15 +125,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let parameters = CastParameters::new(&look.settings, &placement);
     let coarser = args.level_of_detail.map_or_else(Vec::new, |_| volume.coarser_levels());
     let needs_gpu = request.is_some_and(|request| request.is_single_pass());
-    let mut engine = args.open(args.backend, volume, needs_gpu)?;
-    let made = match args.make(&mut engine, &coarser, &parameters, &skipping, request) {
-        Err(Failure::Gpu(error)) if args.backend == BackendChoice::Auto => {
-            note_fallback(&error);
-            engine = args.open(BackendChoice::Cpu, volume, needs_gpu)?;
-            args.make(&mut engine, &coarser, &parameters, &skipping, request)?
-        }
-        made => made?,
-    };
+    let (engine, made) = make_on(
+        args.backend,
+        |choice| args.open(choice, volume, needs_gpu),
+        |engine| args.make(engine, &coarser, &parameters, &skipping, request),
+    )?;
     args.report(&loaded, &look, &engine, &made)
 }
 
