@@ -137,7 +137,7 @@ impl VrBenchArgs {
         match self.headset {
             HeadsetName::None => {
                 let gpu = Arc::new(Gpu::open_best()?);
-                let loaded = open(source, self.tf.as_deref(), &gpu)?;
+                let loaded = open(source, &gpu)?;
                 let (played, stand) = played(recording, &loaded.1);
                 let display = Display::new(self.refresh_hz).map_err(Failure::input)?;
                 let mut headset = Replay::new(
@@ -153,7 +153,7 @@ impl VrBenchArgs {
             HeadsetName::Openxr => {
                 check_readable(Some(volume))?;
                 let connected = Connected::connect()?;
-                let loaded = open(source, self.tf.as_deref(), connected.gpu())?;
+                let loaded = open(source, connected.gpu())?;
                 let (played, stand) = played(recording, &loaded.1);
                 let session = OpenXr::begin(connected, self.pictures.of_pictures(checks.as_ref()))?;
                 let mut headset = Guided::new(session, played);

@@ -207,7 +207,6 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let mut commands: Vec<Command> = vec![Edit::Warp(args.warp).into()];
     commands.extend(args.pictures.commands()?);
     commands.extend(args.tf.clone().map(Command::Preset));
-    let tf = args.tf.as_deref();
     args.pictures.check(args.headset)?;
     let record = args.record.as_deref().map(Record::begin).transpose()?;
     let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
@@ -228,7 +227,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     let shown = match args.headset {
         HeadsetName::None => {
             let gpu = Arc::new(Gpu::open_best()?);
-            let loaded = open(source, tf, &gpu)?;
+            let loaded = open(source, &gpu)?;
             let (played, stand) = played(recording, &loaded.1);
             let display = Display::default();
             let size = spec::picture_size(EYE).map_err(Failure::input)?;
@@ -240,7 +239,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
         HeadsetName::Openxr => {
             check_readable(args.file.as_deref())?;
             let connected = Connected::connect()?;
-            let loaded = open(source, tf, connected.gpu())?;
+            let loaded = open(source, connected.gpu())?;
             if !args.no_mirror {
                 company.mirror = mirror(&connected);
             }
@@ -278,19 +277,11 @@ fn mirror(connected: &Connected) -> Option<Mirror> {
     }
 }
 
-/// Reads and uploads what is to be shown at first, before a session begins that has no time for it. A transfer function that is asked
-/// for has to suit it.
-pub(super) fn open(
-    source: Source,
-    tf: Option<&str>,
-    gpu: &Arc<Gpu>,
-) -> Result<(Session, (Box<Arrived>, Showing)), Failure> {
+/// Reads and uploads what is to be shown at first, before a session begins that has no time for it.
+pub(super) fn open(source: Source, gpu: &Arc<Gpu>) -> Result<(Session, (Box<Arrived>, Showing)), Failure> {
     let _spinner = Bar::spinner("reading the volume");
     let mut session = Session::begin(source, Arc::new(|| ()), Destination::Headset)?;
     let arrived = load(&mut session, gpu)?;
-    if let Some(tf) = tf {
-        arrived.0.facts.transfer(&transfer_spec::parse(tf).map_err(Failure::input)?)?;
-    }
     Ok((session, arrived))
 }
 

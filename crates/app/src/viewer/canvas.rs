@@ -127,17 +127,29 @@ fn configure(gpu: &Gpu, surface: &wgpu::Surface<'_>, config: &wgpu::SurfaceConfi
 /// A texture that can be drawn on and read.
 pub(crate) fn texture(
     gpu: &Gpu,
-    [width, height]: [u32; 2],
+    size: [u32; 2],
     format: wgpu::TextureFormat,
 ) -> Result<wgpu::Texture, GpuError> {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+    texture_for(gpu, "offscreen", size, format, usage)
+}
+
+/// A texture for some uses.
+pub(crate) fn texture_for(
+    gpu: &Gpu,
+    label: &str,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::Texture, GpuError> {
     let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-        label: Some("offscreen"),
+        label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        usage,
         view_formats: &[],
     });
     gpu.check()?;

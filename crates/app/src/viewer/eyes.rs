@@ -1,5 +1,6 @@
 //! What each eye is shown: the newest whole picture, as it looks from where the eye is now.
 
+use super::canvas;
 use super::lens::Lens;
 use super::novel_views::NovelViews;
 use super::state::WarpName;
@@ -287,22 +288,9 @@ impl Eyes {
 }
 
 /// Something that warps are drawn to and passes sample.
-pub(crate) fn room(
-    gpu: &Gpu,
-    [width, height]: [u32; 2],
-    format: wgpu::TextureFormat,
-) -> Result<Canvas, GpuError> {
-    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-        label: Some("warped"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    gpu.check()?;
+pub(crate) fn room(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Result<Canvas, GpuError> {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    let texture = canvas::texture_for(gpu, "warped", size, format, usage)?;
     Ok(Canvas::new(texture.create_view(&wgpu::TextureViewDescriptor::default())))
 }
 

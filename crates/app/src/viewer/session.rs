@@ -210,7 +210,8 @@ impl Session {
         now
     }
 
-    fn try_perform(&mut self, command: &Command) -> Result<(), Failure> {
+    /// Does what it is told; what fails changes nothing.
+    pub(crate) fn try_perform(&mut self, command: &Command) -> Result<(), Failure> {
         match command {
             Command::Edit(edit) => self.edit(edit),
             Command::Open(path) => self.open(path),

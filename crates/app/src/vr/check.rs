@@ -103,17 +103,9 @@ impl Checks {
         seen: Seen,
     ) -> Result<(), Failure> {
         let drawn = shown.color.texture();
-        let image = gpu.device().create_texture(&wgpu::TextureDescriptor {
-            label: Some("kept"),
-            size: drawn.size(),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: drawn.format().remove_srgb_suffix(),
-            usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        gpu.check()?;
+        let size = [drawn.width(), drawn.height()];
+        let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC;
+        let image = canvas::texture_for(gpu, "kept", size, drawn.format().remove_srgb_suffix(), usage)?;
         encoder.copy_texture_to_texture(drawn.as_image_copy(), image.as_image_copy(), drawn.size());
         let [wanted_to, cast_from] = [&seen.wanted, &seen.cast_from].map(|view| view.view_from_world);
         let turned = !wanted_to.matrix3.abs_diff_eq(cast_from.matrix3, STILL);

@@ -69,7 +69,7 @@ impl Room {
         let stand = Stand::before(&MIDDLE, &arrived.facts.grid, up, self.scale);
         let views = self.cast_views(showing.state.stereo.method, &eyes(0.0), &stand, headset.eye_sizes());
         self.show(arrived, showing, views.clone())?;
-        commands.iter().for_each(|command| self.session.perform(command));
+        commands.iter().try_for_each(|command| self.session.try_perform(command))?;
         let asked = self.session.state().pace.warp;
         // What refreshes begin with comes last.
         if asked == WarpName::Volumetric {

@@ -3,8 +3,9 @@
 use crate::support::{distance, folder, recorded, stand_of, wheatstone};
 use glam::{DQuat, DVec3};
 use serde_json::Value;
+use std::path::Path;
 use wheatstone_core::head::Display;
-use wheatstone_core::headset::{Demonstration, Recording, Scale, Stand};
+use wheatstone_core::headset::{Demonstration, Recording, Scale, Stand, Tick};
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::transfer::Preset;
 use wheatstone_core::view::AnatomicalDirection;
@@ -176,19 +177,27 @@ fn one_cast_shows_both_eyes_what_two_casts_do() {
     }
 }
 
+/// The demonstration with a sphere, 25 times per second.
+fn demonstrated() -> Vec<Tick> {
+    let sphere = Phantom::Sphere.cube(24).unwrap();
+    let demonstration = Demonstration::new(sphere.grid(), AnatomicalDirection::Superior);
+    demonstration.recording(Display::new(25.0).unwrap()).unwrap().ticks().to_vec()
+}
+
+fn write_recording(ticks: Vec<Tick>, path: &Path) {
+    Recording::new(ticks).unwrap().write(std::fs::File::create(path).unwrap()).unwrap();
+}
+
 #[test]
 fn canted_displays_get_two_casts_and_that_is_told_once() {
     let folder = folder();
-    let sphere = Phantom::Sphere.cube(24).unwrap();
-    let demonstration = Demonstration::new(sphere.grid(), AnatomicalDirection::Superior);
-    let mut ticks = demonstration.recording(Display::new(25.0).unwrap()).unwrap().ticks().to_vec();
+    let mut ticks = demonstrated();
     for tick in &mut ticks {
         let [left, right] = tick.eyes.as_mut().unwrap();
         left.pose.orientation *= DQuat::from_rotation_y(0.1);
         right.pose.orientation *= DQuat::from_rotation_y(-0.1);
     }
-    let file = std::fs::File::create(folder.path().join("canted.jsonl")).unwrap();
-    Recording::new(ticks).unwrap().write(file).unwrap();
+    write_recording(ticks, &folder.path().join("canted.jsonl"));
 
     let vr = ["vr", "sphere.nrrd", "--headset", "none", "--patient", "--json", "--replay", "canted.jsonl"];
     let ends = ["--refreshes", "30"];
@@ -206,8 +215,7 @@ fn canted_displays_get_two_casts_and_that_is_told_once() {
 fn eyes_that_walk_into_the_volume_see_it_from_inside() {
     let folder = folder();
     let sphere = Phantom::Sphere.cube(24).unwrap();
-    let demonstration = Demonstration::new(sphere.grid(), AnatomicalDirection::Superior);
-    let mut ticks = demonstration.recording(Display::new(25.0).unwrap()).unwrap().ticks().to_vec();
+    let mut ticks = demonstrated();
     ticks.truncate(120);
     let begin = ticks[0];
     let to_middle_m = {
@@ -224,8 +232,7 @@ fn eyes_that_walk_into_the_volume_see_it_from_inside() {
         });
         (tick.eyes, tick.hands) = (Some(eyes), Default::default());
     }
-    let file = std::fs::File::create(folder.path().join("inside.jsonl")).unwrap();
-    Recording::new(ticks).unwrap().write(file).unwrap();
+    write_recording(ticks, &folder.path().join("inside.jsonl"));
 
     let phantom = ["phantom", "shepp-logan", "--size", "24", "-o", "head.nrrd"];
     assert_eq!(wheatstone(folder.path(), &phantom).code, 0);
