@@ -1,6 +1,6 @@
 //! The renderer: what is kept between frames, and the one loop over views.
 
-use crate::anchors::DerivePass;
+use crate::anchors::{DerivePass, FillPass};
 use crate::buffers::storage;
 use crate::cast_pass::{self, Tiles, Variant, VariantPipelines};
 use crate::first_hits::{GpuFirstHits, StartPass};
@@ -62,6 +62,8 @@ pub struct Renderer {
     layer_passes: HashMap<(LayerFormat, Quality), LayerPass>,
     pub(crate) novel_view_pass: Option<NovelViewPass>,
     pub(crate) derive_pass: Option<DerivePass>,
+    /// What fills the hidden cells of anchors, once that has been asked for.
+    pub(crate) fill_pass: Option<FillPass>,
     sampler: wgpu::Sampler,
     /// Stands where a cast without skipping has no map.
     no_map: wgpu::TextureView,
@@ -182,6 +184,7 @@ impl Renderer {
             layer_passes: HashMap::new(),
             novel_view_pass: None,
             derive_pass: None,
+            fill_pass: None,
             sampler,
             unused,
             no_map,

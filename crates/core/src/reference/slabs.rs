@@ -51,10 +51,11 @@ fn cast_view<C: Classify>(context: &Context<'_>, view: &View, slabs: &DepthSlabs
     for (line, row) in picture.cells.chunks_mut(width).zip((0..height).cycle()) {
         rows[row].push(line);
     }
-    let cast = cast_rows(context, view, rows.into_par_iter(), |lines, column, _, ray| {
+    let rows = rows.into_par_iter().zip(picture.ends.par_chunks_mut(width));
+    let cast = cast_rows(context, view, rows, |(lines, ends), column, _, ray| {
         let cells = lines.iter_mut().map(|line| &mut line[column]).collect();
-        let recorder =
-            Recorder { slabs, writer: SlabWriter::new(cells), gathered: Gathered::nothing(()), slab: None };
+        let writer = SlabWriter::new(cells, &mut ends[column]);
+        let recorder = Recorder { slabs, writer, gathered: Gathered::nothing(()), slab: None };
         cast_ray::<C>(context, ray, recorder)
     });
     (cast, picture)

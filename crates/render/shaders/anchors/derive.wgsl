@@ -1,25 +1,21 @@
 import package::lib::shear::{anchor_column, shear, slab_stacks};
-import package::lib::slab_cells::{CLEAR_CELL, LEAST_KNOWN_CELL, SLAB_SQUARE, SLABS_PER_WORD, STACK_ROWS, first_stack};
-import package::lib::unknown::{LEAST_THROUGH, LEAST_UNKNOWN, Unknown};
+import package::lib::slab_cells::{CLEAR_CELL, SLAB_SQUARE, SLABS_PER_WORD, STACK_ROWS, stack_of_cells};
 
-// The picture of a view out of the slabs of its nearest anchor, and where that knows no more: the first pass of
-// `core::lightfield::anchors::derive`. A workgroup is a square, an invocation four rows of a column.
+// The picture of a view out of the slabs of its nearest anchor: `core::lightfield::anchors::derive`. A workgroup is a square, an
+// invocation four rows of a column.
 
-@group(0) @binding(2) var<storage, read_write> unknown: array<Unknown>;
+// What passes a ray where it ends.
+const LEAST_THROUGH: f32 = 0.01;
+
 // Premultiplied RGBA.
-@group(0) @binding(3) var color_target: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(2) var color_target: texture_storage_2d<rgba32float, write>;
 // Slabs of squares, counted from the first that is derived: bits in two words.
-@group(0) @binding(4) var<storage, read> listed: array<vec2u>;
+@group(0) @binding(3) var<storage, read> listed: array<vec2u>;
 
 // Four cells, clear beyond the sides of the picture.
 fn cells_at(first: u32, column: i32) -> vec4u {
     let inside = clamp(column, 0, i32(shear.anchor_size.x) - 1);
     return select(vec4u(CLEAR_CELL), slab_stacks[first + u32(inside)], column == inside);
-}
-
-// Whether rays have ended before cells.
-fn are_hidden(cells: vec4u) -> vec4<bool> {
-    return (cells != vec4u(CLEAR_CELL)) & (cells < vec4u(LEAST_KNOWN_CELL));
 }
 
 // Two channels of cells, 16 bits apart.
@@ -55,9 +51,6 @@ fn derive(@builtin(workgroup_id) square: vec3u, @builtin(local_invocation_id) lo
     var g = vec4f(0.0);
     var b = vec4f(0.0);
     var through = vec4f(1.0);
-    // Rays that have come to what the anchor does not see: how much of them, and the slab.
-    var guessed = vec4f(0.0);
-    var guessed_from = vec4u(0u);
     while any(left_slabs != vec2u(0u)) && any(through >= vec4f(LEAST_THROUGH)) {
         let is_in_second = left_slabs.x == 0u;
         let word = select(left_slabs.x, left_slabs.y, is_in_second);
@@ -67,44 +60,20 @@ fn derive(@builtin(workgroup_id) square: vec3u, @builtin(local_invocation_id) lo
         let at = anchor_column(pixel.x, slab);
         let left = floor(at);
         let share = u32((at - left) * 256.0 + 0.5);
-        let first = first_stack(shear.anchor_size, slab, stack_row);
-        let held = cells_at(first, i32(left));
-        let held_next = cells_at(first, i32(left) + 1);
-        // Between what is hidden and what is not, there is what is not: what hides the one has been there before.
-        let near_is_hidden = are_hidden(held);
-        let next_is_hidden = are_hidden(held_next);
-        let is_unknown = near_is_hidden & next_is_hidden;
-        let near = select(select(held, held_next, near_is_hidden), vec4u(CLEAR_CELL), is_unknown);
-        let next = select(select(held_next, held, next_is_hidden), vec4u(CLEAR_CELL), is_unknown);
+        let first = stack_of_cells(shear.anchor_size, slab, stack_row);
+        let near = cells_at(first, i32(left));
+        let next = cells_at(first, i32(left) + 1);
         let weight = select(vec4f(0.0), through, through >= vec4f(LEAST_THROUGH));
         let red_blue = two_between(near, next, share);
         let green_alpha = two_between(near >> vec4u(8u), next >> vec4u(8u), share);
         r += weight * lower_of(red_blue);
         g += weight * lower_of(green_alpha);
         b += weight * upper_of(red_blue);
-        let ends = is_unknown & (weight > vec4f(0.0));
-        guessed = select(guessed, through, ends);
-        guessed_from = select(guessed_from, vec4u(slab), ends);
-        through = select(through - weight * upper_of(green_alpha), vec4f(0.0), ends);
+        through -= weight * upper_of(green_alpha);
     }
-    // What is guessed takes the colour of the rest; of rays of which it is much, the next pass makes another one.
-    let is_kept = guessed <= vec4f(LEAST_UNKNOWN);
-    let scale = select(vec4f(1.0), 1.0 / (1.0 - guessed), is_kept);
     for (var row = 0u; row < STACK_ROWS; row++) {
         if pixel.y + row < shear.size.y {
-            let color = vec4f(scale[row] * vec3f(r[row], g[row], b[row]), 1.0 - through[row]);
-            textureStore(color_target, pixel + vec2u(0u, row), color);
+            textureStore(color_target, pixel + vec2u(0u, row), vec4f(r[row], g[row], b[row], 1.0 - through[row]));
         }
-    }
-    let at_unknown = stack_row * shear.size.x + pixel.x;
-    unknown[at_unknown].through = guessed;
-    // A loop and no branch: software Vulkan would write for every ray.
-    var is_left = !all(is_kept);
-    while is_left {
-        unknown[at_unknown].first_slab = guessed_from;
-        unknown[at_unknown].r = r;
-        unknown[at_unknown].g = g;
-        unknown[at_unknown].b = b;
-        is_left = false;
     }
 }

@@ -1,6 +1,6 @@
 import package::lib::ray::{Ray, ray_depth_m};
 import package::lib::ray_state::{RayState};
-import package::lib::slab_cells::{SLABS_PER_WORD, SLAB_SQUARE, STACK_ROWS, first_stack, slab_squares};
+import package::lib::slab_cells::{HIDER_SHIFT, HIDER_STEPS, SLAB_SQUARE, STACK_ROWS, first_cell_at, first_end_at, slab_bit, slab_squares};
 import package::lib::view::{view};
 
 // Leaves what rays pass in slabs of depth, `view.pair.count` of them, even in k / depth: `Recorder` of `core::reference::slabs`.
@@ -11,6 +11,9 @@ import package::lib::view::{view};
 // The slab before the first visible sample.
 const NO_SLAB: u32 = 0xffffffffu;
 
+// Behind every sample.
+const NO_END: f32 = 1e30;
+
 // Steps of a channel of a cell.
 const CELL_STEPS: f32 = 255.0;
 
@@ -20,6 +23,8 @@ struct OpenSlab {
     color: vec3f,
     transmittance: f32,
     slab: u32,
+    // The first sample that may be behind it.
+    end_sample: f32,
 }
 
 var<private> slabs_pixel: vec2u;
@@ -30,32 +35,45 @@ var<private> filled_slabs: vec2u;
 
 fn begin_recording(pixel: vec2u) {
     slabs_pixel = pixel;
-    open_slab = OpenSlab(vec3f(0.0), 1.0, NO_SLAB);
+    open_slab = OpenSlab(vec3f(0.0), 1.0, NO_SLAB, -1.0);
     lost_steps = vec4f(0.5);
     filled_slabs = vec2u(0u);
 }
 
 // Adds sample i, between two states of its ray.
 fn record(ray: Ray, i: u32, before: RayState, after: RayState) {
-    let behind = view.pair.offset - view.pair.k / ray_depth_m(ray, f32(i));
-    let slab = min(u32(max(behind, 0.0)), view.pair.count - 1u);
-    let begins = after.transmittance < before.transmittance && slab != open_slab.slab;
-    // A loop and no branch: software Vulkan would write for every sample.
-    var is_left = begins && open_slab.slab != NO_SLAB;
+    // A loop and no branch: software Vulkan would find the slab of every sample.
+    var is_left = after.transmittance < before.transmittance && f32(i) >= open_slab.end_sample;
     while is_left {
-        end_slab(before);
+        let behind = view.pair.offset - view.pair.k / ray_depth_m(ray, f32(i));
+        let slab = min(u32(max(behind, 0.0)), view.pair.count - 1u);
+        var is_another = slab != open_slab.slab && open_slab.slab != NO_SLAB;
+        while is_another {
+            end_slab(before);
+            is_another = false;
+        }
+        if slab != open_slab.slab {
+            open_slab = OpenSlab(before.color, before.transmittance, slab, 0.0);
+        }
+        open_slab.end_sample = max(end_sample(ray, slab), f32(i + 1u));
         is_left = false;
     }
-    if begins {
-        open_slab = OpenSlab(before.color, before.transmittance, slab);
-    }
+}
+
+// The first sample behind a slab.
+fn end_sample(ray: Ray, slab: u32) -> f32 {
+    let per_k = view.pair.offset - f32(slab + 1u);
+    let is_last = per_k <= 0.0 || slab + 1u >= view.pair.count || ray.step_depth_m <= 0.0;
+    let sample = (view.pair.k / per_k - ray.first_depth_m) / ray.step_depth_m;
+    return select(floor(sample), NO_END, is_last);
 }
 
 fn end_recording(state: RayState) {
     if open_slab.slab != NO_SLAB {
         let color = end_slab(state);
         if state.is_finished == 1u {
-            hide_behind(open_slab.slab, color.rgb / color.a);
+            let end = first_end_at(vec2u(view.width, view.height), slabs_pixel.y) + slabs_pixel.x * STACK_ROWS;
+            atomicStore(&slab_cells[end], hider(open_slab.slab, color.rgb / color.a));
         }
         let squares = slab_squares(vec2u(view.width, view.height));
         let square = slabs_pixel / SLAB_SQUARE;
@@ -65,46 +83,24 @@ fn end_recording(state: RayState) {
     }
 }
 
-// Where the cell of a slab is.
-fn slab_cell_at(slab: u32) -> u32 {
-    let stack = first_stack(vec2u(view.width, view.height), slab, slabs_pixel.y / STACK_ROWS) + slabs_pixel.x;
-    return stack * STACK_ROWS + slabs_pixel.y % STACK_ROWS;
-}
-
-fn note_filled(slab: u32) {
-    let bit = 1u << (slab % SLABS_PER_WORD);
-    filled_slabs |= select(vec2u(bit, 0u), vec2u(0u, bit), slab >= SLABS_PER_WORD);
-}
-
 // Writes the cell of the slab that a ray is in, which has gathered what it has in all, behind what an earlier part of the ray has left
 // there, and returns what this part has in it.
 fn end_slab(state: RayState) -> vec4f {
     let color = vec4f(state.color - open_slab.color, open_slab.transmittance - state.transmittance) / open_slab.transmittance;
-    let at = slab_cell_at(open_slab.slab);
+    let at = first_cell_at(vec2u(view.width, view.height), open_slab.slab, slabs_pixel.y) + slabs_pixel.x * STACK_ROWS;
     let held = unpack4x8unorm(atomicLoad(&slab_cells[at]));
     let exact = CELL_STEPS * (held + (1.0 - held.a) * color) + lost_steps;
-    var steps = clamp(floor(exact), vec4f(0.0), vec4f(CELL_STEPS));
-    // Nothing may look like a cell behind an end.
-    steps = select(steps, vec4f(0.0), steps.a == 0.0);
+    let steps = clamp(floor(exact), vec4f(0.0), vec4f(CELL_STEPS));
     lost_steps = exact - steps;
     atomicStore(&slab_cells[at], pack4x8unorm(steps / CELL_STEPS));
-    note_filled(open_slab.slab);
+    filled_slabs |= slab_bit(open_slab.slab);
     return color;
 }
 
-// A cell behind what has a colour in a slab: `core::lightfield::anchors::Hider`.
-fn hidden_cell(slab: u32, rgb: vec3f) -> u32 {
-    let steps = vec3u(clamp(rgb, vec3f(0.0), vec3f(1.0)) * 63.0 + 0.5);
-    return ((slab + 1u) << 18u) | (steps.b << 12u) | (steps.g << 6u) | steps.r;
-}
-
-// Marks what is behind a slab as unknown, if something of a colour hides it.
-fn hide_behind(slab: u32, rgb: vec3f) {
-    let cell = hidden_cell(slab, rgb);
-    for (var hidden = slab + 1u; hidden < view.pair.count; hidden++) {
-        atomicStore(&slab_cells[slab_cell_at(hidden)], cell);
-        note_filled(hidden);
-    }
+// What has a colour in a slab, and hides what is behind.
+fn hider(slab: u32, rgb: vec3f) -> u32 {
+    let steps = vec3u(clamp(rgb, vec3f(0.0), vec3f(1.0)) * HIDER_STEPS + 0.5);
+    return ((slab + 1u) << HIDER_SHIFT) | (steps.b << 12u) | (steps.g << 6u) | steps.r;
 }
 
 // Pictures of surfaces have no slabs.

@@ -1,8 +1,9 @@
 // Cells of slabs of depth: `core::lightfield::anchors::SlabPicture`.
 //
 // A picture's buffer begins with two words of bits for each square of 8 x 8 pixels, row by row: the slabs in which it has cells that are
-// not clear. Cells follow slab by slab from the front, in stacks of four rows: those of a column of a stack are next to each other, for
-// software Vulkan takes about as long to load one word as four.
+// not clear. Planes of words follow: what hides the last slabs of each pixel, then the cells of each slab from the front. Planes are in
+// stacks of four rows: the words of a column of a stack are next to each other, for software Vulkan takes about as long to load one word
+// as four.
 
 // Side of a square that bits are for, pixels.
 const SLAB_SQUARE: u32 = 8u;
@@ -14,19 +15,42 @@ const SLABS_PER_WORD: u32 = 32u;
 
 const CLEAR_CELL: u32 = 0u;
 
-// The first cell that is neither clear nor behind what its ray has ended in: below, six bits each for the number of the slab after that
-// (`core::lightfield::anchors::Hider`), its blue, green and red.
-const LEAST_KNOWN_CELL: u32 = 0x1000000u;
+// Bits below the number of the slab after that in which something hides what is behind, and its blue, green and red of six bits each:
+// `core::lightfield::anchors::Hider`. Zero if nothing does.
+const HIDER_SHIFT: u32 = 18u;
+
+const HIDER_STEPS: f32 = 63.0;
 
 // Squares along x and y of a picture.
 fn slab_squares(size: vec2u) -> vec2u {
     return (size + SLAB_SQUARE - 1u) / SLAB_SQUARE;
 }
 
-// The first stack of a slab, counted from the buffer's begin.
-fn first_stack(size: vec2u, slab: u32, stack_row: u32) -> u32 {
+// The first stack of a row of stacks of a plane, counted from the buffer's begin.
+fn stack_of_plane(size: vec2u, plane: u32, stack_row: u32) -> u32 {
     let squares = slab_squares(size);
     let stacks_of_bits = (2u * squares.x * squares.y + STACK_ROWS - 1u) / STACK_ROWS;
     let stack_rows = (size.y + STACK_ROWS - 1u) / STACK_ROWS;
-    return stacks_of_bits + (slab * stack_rows + stack_row) * size.x;
+    return stacks_of_bits + (plane * stack_rows + stack_row) * size.x;
+}
+
+// The first stack of cells of a row of stacks of a slab.
+fn stack_of_cells(size: vec2u, slab: u32, stack_row: u32) -> u32 {
+    return stack_of_plane(size, slab + 1u, stack_row);
+}
+
+// Where what hides the last slabs of a row of pixels is: the word of its first pixel; those of the next ones are `STACK_ROWS` apart.
+fn first_end_at(size: vec2u, row: u32) -> u32 {
+    return stack_of_plane(size, 0u, row / STACK_ROWS) * STACK_ROWS + row % STACK_ROWS;
+}
+
+// Where the cells of a row of pixels in a slab are, in the same way.
+fn first_cell_at(size: vec2u, slab: u32, row: u32) -> u32 {
+    return stack_of_cells(size, slab, row / STACK_ROWS) * STACK_ROWS + row % STACK_ROWS;
+}
+
+// The bit of a slab in the two words of a square.
+fn slab_bit(slab: u32) -> vec2u {
+    let bit = 1u << (slab % SLABS_PER_WORD);
+    return select(vec2u(bit, 0u), vec2u(0u, bit), slab >= SLABS_PER_WORD);
 }

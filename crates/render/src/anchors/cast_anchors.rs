@@ -2,6 +2,7 @@
 
 use super::GpuSlabs;
 use super::derive_pass::DerivePass;
+use super::fill_pass::FillPass;
 use crate::gpu::{Gpu, GpuError};
 use crate::renderer::{Prepared, Renderer};
 use crate::squares::Squares;
@@ -43,7 +44,7 @@ impl CastAnchors {
         self.plan.derived[index].view
     }
 
-    /// Reads back what the rays of an anchor pass, and its picture.
+    /// Reads back what the rays of an anchor pass, with what fills the hidden cells, and its picture.
     ///
     /// # Errors
     /// No memory, a lost or hung device.
@@ -91,8 +92,30 @@ impl Renderer {
             self.cast(gpu, &with_slabs, &anchor.view, &mut target)?;
             targets.push(target);
         }
+        self.fill(gpu, plan, &targets)?;
         let corners_world = prepared.parameters.occupied_corners_world();
         Ok(CastAnchors { plan: plan.clone(), targets, corners_world })
+    }
+
+    /// Fills what anchors do not see.
+    fn fill(&mut self, gpu: &Gpu, plan: &AnchorPlan, targets: &[Target]) -> Result<(), GpuError> {
+        let pass = match self.fill_pass.take() {
+            Some(pass) => self.fill_pass.insert(pass),
+            None => self.fill_pass.insert(FillPass::new(gpu)?),
+        };
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for (index, target) in targets.iter().enumerate() {
+            let neighbours: Vec<_> = plan
+                .neighbours(index)
+                .into_iter()
+                .filter_map(|source| Some((source, targets[source.anchor].slabs.as_ref()?)))
+                .collect();
+            if let Some(slabs) = &target.slabs {
+                pass.encode(gpu, &mut encoder, slabs, &neighbours);
+            }
+        }
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()
     }
 
     /// Makes the picture of a view of anchors, without depths, and waits until it is done. An anchor's own view is its cast.
@@ -132,13 +155,8 @@ impl Renderer {
                 );
             }
             None => {
-                let mut sources = derived
-                    .sources
-                    .iter()
-                    .filter_map(|source| Some((source, anchors.targets[source.anchor].slabs.as_ref()?)));
-                if let Some(nearest) = sources.next() {
-                    let other = sources.next().unwrap_or(nearest);
-                    pass.encode(gpu, &mut encoder, target, &covered, [nearest, other]);
+                if let Some(slabs) = &anchors.targets[derived.source.anchor].slabs {
+                    pass.encode(gpu, &mut encoder, target, &covered, (&derived.source, slabs));
                 }
             }
         }

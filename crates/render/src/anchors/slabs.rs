@@ -30,9 +30,10 @@ fn words_of_bits(size: [u32; 2]) -> u64 {
     words.next_multiple_of(u64::from(STACK_ROWS))
 }
 
-/// Bytes of the slabs of a picture, whose rows are filled up to whole stacks.
+/// Bytes of the slabs of a picture, whose rows are filled up to whole stacks; what hides the last of them takes as much as a slab.
 fn byte_size([width, height]: [u32; 2], slabs: &DepthSlabs) -> u64 {
-    4 * words_of_bits([width, height]) + slabs.byte_size([width, height.next_multiple_of(STACK_ROWS)])
+    let planes = DepthSlabs { count: slabs.count + 1, ..*slabs };
+    4 * words_of_bits([width, height]) + planes.byte_size([width, height.next_multiple_of(STACK_ROWS)])
 }
 
 impl GpuSlabs {
@@ -69,7 +70,7 @@ impl GpuSlabs {
         }
     }
 
-    /// Reads the cells back.
+    /// Reads the cells back, and what hides them.
     pub(super) fn read(&self, gpu: &Gpu) -> Result<SlabPicture, GpuError> {
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
@@ -86,11 +87,11 @@ impl GpuSlabs {
         let mut picture = SlabPicture::clear(self.size, self.slabs.count);
         let [width, height] = self.size.map(|side| side as usize);
         let rows = STACK_ROWS as usize;
-        for (index, cell) in picture.cells.iter_mut().enumerate() {
+        for (index, held) in picture.ends.iter_mut().chain(&mut picture.cells).enumerate() {
             let (line, column) = (index / width, index % width);
-            let (slab, row) = (line / height, line % height);
-            let stack = (slab * height.div_ceil(rows) + row / rows) * width + column;
-            *cell = words[stack * rows + row % rows];
+            let (plane, row) = (line / height, line % height);
+            let stack = (plane * height.div_ceil(rows) + row / rows) * width + column;
+            *held = words[stack * rows + row % rows];
         }
         Ok(picture)
     }

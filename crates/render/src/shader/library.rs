@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 files! {
-    "anchors/ask_both",
+    "anchors/fill",
     "anchors/derive",
     "anchors/list_slabs",
     "cast",
@@ -114,7 +114,6 @@ files! {
     "lib/tile_list",
     "lib/tiles_all",
     "lib/tiles_listed",
-    "lib/unknown",
     "lib/value_sum",
     "lib/view",
     "lib/volume_filtered",

@@ -35,25 +35,25 @@ pub struct Anchor {
 pub struct Source {
     /// Which anchor.
     pub anchor: usize,
-    /// From a column of the view to that of the anchor's picture at which it sees the nearest slab.
+    /// From a column of the picture to that of the anchor's at which it sees the nearest slab.
     pub offset_px: f64,
     /// How many columns further to the right each next slab is seen.
     pub per_slab_px: f64,
 }
 
-/// A view, and the anchors that it comes of.
-#[derive(Debug, Clone, PartialEq)]
+/// A view, and the anchor that it comes of.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derived {
     /// The view.
     pub view: View,
-    /// The nearest anchor, and the nearest one on the other side of the view, if there is any, for what that does not see.
-    pub sources: Vec<Source>,
+    /// The nearest anchor.
+    pub source: Source,
 }
 
 /// Anchors for some views.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnchorPlan {
-    /// What is cast.
+    /// What is cast, from the first view to the last.
     pub anchors: Vec<Anchor>,
     /// Every view, in order.
     pub derived: Vec<Derived>,
@@ -62,6 +62,23 @@ pub struct AnchorPlan {
 }
 
 impl AnchorPlan {
+    /// How the picture of an anchor comes of those next to it, which see some of what it does not.
+    ///
+    /// # Panics
+    /// If there is no such anchor.
+    pub fn neighbours(&self, anchor: usize) -> Vec<Source> {
+        let own = &self.anchors[anchor];
+        let next_to = [anchor.checked_sub(1), Some(anchor + 1).filter(|&next| next < self.anchors.len())];
+        let sources = next_to.into_iter().flatten().filter_map(|next| {
+            let cast = &self.anchors[next];
+            let epipolar =
+                Epipolar::new(&self.derived[cast.index].view, &self.derived[own.index].view).ok()?;
+            let source = source(&epipolar, next, cast, &self.slabs);
+            Some(Source { offset_px: source.offset_px - f64::from(own.left_px), ..source })
+        });
+        sources.collect()
+    }
+
     /// As few anchors as their slabs allow, but at least two: [`MOST_SLABS`] of them, in each of which nothing moves by more than [`THICKNESS_PX`], cover
     /// the depths of a convex body with corners in world space.
     ///
@@ -197,24 +214,21 @@ impl<'a> Groups<'a> {
     }
 
     fn derived(&self, view: &View, anchors: &[Anchor], slabs: &DepthSlabs) -> Result<Derived, AnchorError> {
-        let mut sources = anchors
-            .iter()
-            .enumerate()
-            .map(|(anchor, cast)| {
-                let epipolar = Epipolar::new(&self.views[cast.index], view)?;
-                let moved_px = |slab| -epipolar.derived_position(0.0, slabs.middle_per_m(slab).recip());
-                let (first, second) = (moved_px(0), moved_px(1));
-                let offset_px = first + f64::from(cast.left_px);
-                Ok((epipolar.k(), Source { anchor, offset_px, per_slab_px: second - first }))
+        let sources = (0..anchors.len())
+            .map(|anchor| {
+                let epipolar = Epipolar::new(&self.views[anchors[anchor].index], view)?;
+                Ok((epipolar.k(), source(&epipolar, anchor, &anchors[anchor], slabs)))
             })
             .collect::<Result<Vec<_>, AnchorError>>()?;
-        sources.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let mut sources = sources.into_iter().map(|(_, source)| source);
-        let nearest = sources.next();
-        // Slabs of an anchor further away on the same side would move by several pixels each, and it does not see what the nearer one
-        // does not.
-        let other =
-            nearest.and_then(|nearest| sources.find(|other| other.per_slab_px * nearest.per_slab_px < 0.0));
-        Ok(Derived { view: *view, sources: nearest.into_iter().chain(other).collect() })
+        let nearest = sources.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let (_, source) = nearest.ok_or(AnchorError::NoViews)?;
+        Ok(Derived { view: *view, source })
     }
+}
+
+/// How a view comes of an anchor.
+fn source(epipolar: &Epipolar, anchor: usize, cast: &Anchor, slabs: &DepthSlabs) -> Source {
+    let moved_px = |slab| -epipolar.derived_position(0.0, slabs.middle_per_m(slab).recip());
+    let (first, second) = (moved_px(0), moved_px(1));
+    Source { anchor, offset_px: first + f64::from(cast.left_px), per_slab_px: second - first }
 }

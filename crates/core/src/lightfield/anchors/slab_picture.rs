@@ -6,9 +6,6 @@ use glam::Vec4;
 /// A cell in which nothing is.
 pub const CLEAR: u32 = 0;
 
-/// Bits below the opacity of a cell.
-const ALPHA_SHIFT: u32 = 24;
-
 /// Steps of a channel of the colour of a [`Hider`].
 const HIDER_STEPS: f32 = 63.0;
 
@@ -16,7 +13,7 @@ const HIDER_STEPS: f32 = 63.0;
 const HIDER_SHIFT: u32 = 18;
 
 /// What the rays of a picture have in each slab of depth, by itself: a cell for each, which is four bytes, red, green, blue and opacity,
-/// premultiplied, as if nothing were in front. A cell behind what its ray has ended in has no opacity: it tells of that [`Hider`].
+/// premultiplied, as if nothing were in front. Cells behind what their ray has ended in are not known, and clear.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SlabPicture {
     /// Width and height, pixels.
@@ -25,6 +22,8 @@ pub struct SlabPicture {
     pub count: u32,
     /// Cells of the nearest slab row by row, then those of the next.
     pub cells: Vec<u32>,
+    /// What hides the last slabs of each pixel, row by row: a [`Hider`], or [`CLEAR`] where all are seen.
+    pub ends: Vec<u32>,
 }
 
 /// What a ray has ended in. Six bits each for the number of the slab after it, blue, green and red, so that of two cells the larger one is
@@ -39,14 +38,14 @@ impl Hider {
         Self((slab + 1) << HIDER_SHIFT | b << 12 | g << 6 | r)
     }
 
-    /// That of a cell, if its ray has ended before.
-    pub fn of_cell(cell: u32) -> Option<Self> {
-        (cell != CLEAR && cell >> ALPHA_SHIFT == 0).then_some(Self(cell))
+    /// That of a word of [`SlabPicture::ends`].
+    pub fn of_end(end: u32) -> Option<Self> {
+        (end != CLEAR).then_some(Self(end))
     }
 
-    /// The cell behind it.
-    pub fn cell(self) -> u32 {
-        self.0
+    /// Whether a slab is behind it.
+    pub fn hides(self, slab: u32) -> bool {
+        slab > self.slab()
     }
 
     /// The slab that it is in.
@@ -64,19 +63,31 @@ impl Hider {
 impl SlabPicture {
     /// One of rays that meet nothing.
     pub fn clear(size: [u32; 2], count: u32) -> Self {
-        let cells = size[0] as usize * size[1] as usize * count as usize;
-        Self { size, count, cells: vec![CLEAR; cells] }
+        let pixels = size[0] as usize * size[1] as usize;
+        Self { size, count, cells: vec![CLEAR; pixels * count as usize], ends: vec![CLEAR; pixels] }
     }
 
     /// A cell; clear beyond the picture's sides.
     pub fn cell(&self, slab: u32, column: i64, row: u32) -> u32 {
-        let [width, height] = self.size;
-        if !(0..i64::from(width)).contains(&column) {
-            return CLEAR;
-        }
-        let line = slab as usize * height as usize + row as usize;
-        self.cells[line * width as usize + column as usize]
+        let line = slab as usize * self.size[1] as usize + row as usize;
+        self.in_line(&self.cells, line, column)
     }
+
+    /// What hides the last slabs of a pixel; nothing beyond the picture's sides.
+    pub fn hider(&self, column: i64, row: u32) -> Option<Hider> {
+        Hider::of_end(self.in_line(&self.ends, row as usize, column))
+    }
+
+    fn in_line(&self, words: &[u32], line: usize, column: i64) -> u32 {
+        let width = self.size[0] as usize;
+        let inside = usize::try_from(column).ok().filter(|&column| column < width);
+        inside.map_or(CLEAR, |column| words[line * width + column])
+    }
+}
+
+/// The cell that is nearest to a colour, premultiplied RGBA.
+pub(super) fn cell_of(color: Vec4) -> u32 {
+    u32::from_le_bytes((color * 255.0 + 0.5).to_array().map(|byte| byte as u8))
 }
 
 /// Premultiplied RGBA of a cell.
@@ -92,31 +103,27 @@ pub fn color_of(cell: u32) -> Vec4 {
 pub(crate) struct SlabWriter<'a> {
     /// The ray's cells from the front.
     cells: Vec<&'a mut u32>,
+    end: &'a mut u32,
     lost: Vec4,
 }
 
 impl<'a> SlabWriter<'a> {
     /// Of a ray that has met nothing so far.
-    pub(crate) fn new(cells: Vec<&'a mut u32>) -> Self {
-        Self { cells, lost: Vec4::splat(0.5) }
+    pub(crate) fn new(cells: Vec<&'a mut u32>, end: &'a mut u32) -> Self {
+        Self { cells, end, lost: Vec4::splat(0.5) }
     }
 
     /// Sets the cell of a slab to what is in it, premultiplied RGBA.
     pub(crate) fn put(&mut self, slab: u32, color: Vec4) {
         let exact = color * 255.0 + self.lost;
         let bytes = exact.floor().clamp(Vec4::ZERO, Vec4::splat(255.0));
-        // Nothing may look like a cell behind an end.
-        let bytes = if bytes.w == 0.0 { Vec4::ZERO } else { bytes };
         self.lost = exact - bytes;
         *self.cells[slab as usize] = u32::from_le_bytes(bytes.to_array().map(|byte| byte as u8));
     }
 
-    /// Marks what is behind a slab as unknown, if something of a colour hides it.
+    /// Marks what is behind a slab as hidden by something of a colour.
     pub(crate) fn hide_behind(&mut self, slab: u32, rgb: [f32; 3]) {
-        let hider = Hider::new(slab, rgb);
-        for cell in &mut self.cells[slab as usize + 1..] {
-            **cell = hider.cell();
-        }
+        *self.end = Hider::new(slab, rgb).0;
     }
 }
 
