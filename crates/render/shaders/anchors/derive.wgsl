@@ -1,4 +1,4 @@
-import package::lib::shear::{anchor_column, shear, slab_stacks};
+import package::lib::shear::{anchor_column, shear};
 import package::lib::slab_cells::{CLEAR_CELL, SLAB_SQUARE, SLABS_PER_WORD, STACK_ROWS, stack_of_cells};
 
 // The picture of a view out of the slabs of its nearest anchor: `core::lightfield::anchors::derive`. A workgroup is a square, an
@@ -7,6 +7,8 @@ import package::lib::slab_cells::{CLEAR_CELL, SLAB_SQUARE, SLABS_PER_WORD, STACK
 // What passes a ray where it ends.
 const LEAST_THROUGH: f32 = 0.01;
 
+// Planes of the anchor, as of `lib/slab_cells`, a stack at a time.
+@group(0) @binding(1) var<storage, read> slab_stacks: array<vec4u>;
 // Premultiplied RGBA.
 @group(0) @binding(2) var color_target: texture_storage_2d<rgba32float, write>;
 // Slabs of squares, counted from the first that is derived: bits in two words.

@@ -1,6 +1,6 @@
 import package::lib::ray::{Ray, ray_depth_m};
 import package::lib::ray_state::{RayState};
-import package::lib::slab_cells::{HIDER_SHIFT, HIDER_STEPS, SLAB_SQUARE, STACK_ROWS, first_cell_at, first_end_at, slab_bit, slab_squares};
+import package::lib::slab_cells::{HIDER_SHIFT, HIDER_STEPS, SLAB_SQUARE, STACK_ROWS, slab_bit, slab_squares, stack_of_cells, stack_of_ends, words_of_bits};
 import package::lib::view::{view};
 
 // Leaves what rays pass in slabs of depth, `view.pair.count` of them, even in k / depth: `Recorder` of `core::reference::slabs`.
@@ -32,12 +32,15 @@ var<private> open_slab: OpenSlab;
 // What rounding down has left of the cells so far, steps.
 var<private> lost_steps: vec4f;
 var<private> filled_slabs: vec2u;
+// Whether the slab that the ray is in, or comes to, is the first of this part of it.
+var<private> is_first_slab: bool;
 
 fn begin_recording(pixel: vec2u) {
     slabs_pixel = pixel;
     open_slab = OpenSlab(vec3f(0.0), 1.0, NO_SLAB, -1.0);
     lost_steps = vec4f(0.5);
     filled_slabs = vec2u(0u);
+    is_first_slab = true;
 }
 
 // Adds sample i, between two states of its ray.
@@ -47,12 +50,8 @@ fn record(ray: Ray, i: u32, before: RayState, after: RayState) {
     while is_left {
         let behind = view.pair.offset - view.pair.k / ray_depth_m(ray, f32(i));
         let slab = min(u32(max(behind, 0.0)), view.pair.count - 1u);
-        var is_another = slab != open_slab.slab && open_slab.slab != NO_SLAB;
-        while is_another {
-            end_slab(before);
-            is_another = false;
-        }
         if slab != open_slab.slab {
+            end_slab(before);
             open_slab = OpenSlab(before.color, before.transmittance, slab, 0.0);
         }
         open_slab.end_sample = max(end_sample(ray, slab), f32(i + 1u));
@@ -72,8 +71,8 @@ fn end_recording(state: RayState) {
     if open_slab.slab != NO_SLAB {
         let color = end_slab(state);
         if state.is_finished == 1u {
-            let end = first_end_at(vec2u(view.width, view.height), slabs_pixel.y) + slabs_pixel.x * STACK_ROWS;
-            atomicStore(&slab_cells[end], hider(open_slab.slab, color.rgb / color.a));
+            let end = stack_of_ends(vec2u(view.width, view.height), slabs_pixel.y / STACK_ROWS);
+            atomicStore(&slab_cells[word_of(end)], hider(open_slab.slab, color.rgb / color.a));
         }
         let squares = slab_squares(vec2u(view.width, view.height));
         let square = slabs_pixel / SLAB_SQUARE;
@@ -83,17 +82,32 @@ fn end_recording(state: RayState) {
     }
 }
 
-// Writes the cell of the slab that a ray is in, which has gathered what it has in all, behind what an earlier part of the ray has left
-// there, and returns what this part has in it.
+// Where the word of the ray's pixel is, of a row of stacks.
+fn word_of(first_stack: u32) -> u32 {
+    return words_of_bits(vec2u(view.width, view.height)) + (first_stack + slabs_pixel.x) * STACK_ROWS + slabs_pixel.y % STACK_ROWS;
+}
+
+// Writes the cell of the slab that a ray is in, if it is in one, which has gathered what it has in all, and returns what this part has in it.
 fn end_slab(state: RayState) -> vec4f {
-    let color = vec4f(state.color - open_slab.color, open_slab.transmittance - state.transmittance) / open_slab.transmittance;
-    let at = first_cell_at(vec2u(view.width, view.height), open_slab.slab, slabs_pixel.y) + slabs_pixel.x * STACK_ROWS;
-    let held = unpack4x8unorm(atomicLoad(&slab_cells[at]));
+    let gathered = vec4f(state.color - open_slab.color, open_slab.transmittance - state.transmittance);
+    let color = gathered * (1.0 / open_slab.transmittance);
+    let at = word_of(stack_of_cells(vec2u(view.width, view.height), open_slab.slab, slabs_pixel.y / STACK_ROWS));
+    // What an earlier part of the ray has left in the slab.
+    var held = vec4f(0.0);
+    var may_be_held = is_first_slab && open_slab.slab != NO_SLAB;
+    while may_be_held {
+        held = unpack4x8unorm(atomicLoad(&slab_cells[at]));
+        is_first_slab = false;
+        may_be_held = false;
+    }
     let exact = CELL_STEPS * (held + (1.0 - held.a) * color) + lost_steps;
     let steps = clamp(floor(exact), vec4f(0.0), vec4f(CELL_STEPS));
     lost_steps = exact - steps;
-    atomicStore(&slab_cells[at], pack4x8unorm(steps / CELL_STEPS));
-    filled_slabs |= slab_bit(open_slab.slab);
+    let bytes = vec4u(steps) << vec4u(0u, 8u, 16u, 24u);
+    if open_slab.slab != NO_SLAB {
+        atomicStore(&slab_cells[at], bytes.x | bytes.y | bytes.z | bytes.w);
+        filled_slabs |= slab_bit(open_slab.slab);
+    }
     return color;
 }
 

@@ -26,27 +26,26 @@ fn slab_squares(size: vec2u) -> vec2u {
     return (size + SLAB_SQUARE - 1u) / SLAB_SQUARE;
 }
 
-// The first stack of a row of stacks of a plane, counted from the buffer's begin.
-fn stack_of_plane(size: vec2u, plane: u32, stack_row: u32) -> u32 {
+// Words before the planes: they begin where a binding may.
+fn words_of_bits(size: vec2u) -> u32 {
     let squares = slab_squares(size);
-    let stacks_of_bits = (2u * squares.x * squares.y + STACK_ROWS - 1u) / STACK_ROWS;
-    let stack_rows = (size.y + STACK_ROWS - 1u) / STACK_ROWS;
-    return stacks_of_bits + (plane * stack_rows + stack_row) * size.x;
+    return (2u * squares.x * squares.y + 63u) / 64u * 64u;
 }
 
-// The first stack of cells of a row of stacks of a slab.
+// The first stack of a row of stacks of a plane, counted from the first plane.
+fn stack_of_plane(size: vec2u, plane: u32, stack_row: u32) -> u32 {
+    let stack_rows = (size.y + STACK_ROWS - 1u) / STACK_ROWS;
+    return (plane * stack_rows + stack_row) * size.x;
+}
+
+// The first stack of what hides the last slabs.
+fn stack_of_ends(size: vec2u, stack_row: u32) -> u32 {
+    return stack_of_plane(size, 0u, stack_row);
+}
+
+// The first stack of cells of a slab.
 fn stack_of_cells(size: vec2u, slab: u32, stack_row: u32) -> u32 {
     return stack_of_plane(size, slab + 1u, stack_row);
-}
-
-// Where what hides the last slabs of a row of pixels is: the word of its first pixel; those of the next ones are `STACK_ROWS` apart.
-fn first_end_at(size: vec2u, row: u32) -> u32 {
-    return stack_of_plane(size, 0u, row / STACK_ROWS) * STACK_ROWS + row % STACK_ROWS;
-}
-
-// Where the cells of a row of pixels in a slab are, in the same way.
-fn first_cell_at(size: vec2u, slab: u32, row: u32) -> u32 {
-    return stack_of_cells(size, slab, row / STACK_ROWS) * STACK_ROWS + row % STACK_ROWS;
 }
 
 // The bit of a slab in the two words of a square.

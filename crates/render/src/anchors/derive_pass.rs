@@ -85,10 +85,10 @@ impl DerivePass {
         }));
         let color = target.color.create_view(&wgpu::TextureViewDescriptor::default());
         let color = wgpu::BindingResource::TextureView(&color);
-        let [shear, cells, listed] = [&uniform, &slabs.cells, listed].map(wgpu::Buffer::as_entire_binding);
-        let group = self.list.bind(&gpu.device, &[shear.clone(), cells.clone(), listed.clone()]);
+        let [shear, listed] = [&uniform, listed].map(wgpu::Buffer::as_entire_binding);
+        let group = self.list.bind(&gpu.device, &[shear.clone(), slabs.bits(), listed.clone()]);
         self.list.dispatch(encoder, &group, [squares[0], squares[1], 1]);
-        let group = self.derive.bind(&gpu.device, &[shear, cells, color, listed]);
+        let group = self.derive.bind(&gpu.device, &[shear, slabs.planes(), color, listed]);
         let pixels = squares.map(|squares| squares * super::slabs::SQUARE);
         self.derive.dispatch(encoder, &group, [pixels[0], pixels[1], 1]);
     }

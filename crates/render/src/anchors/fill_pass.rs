@@ -41,7 +41,7 @@ impl FillPass {
     pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let fill = Kernel::new(&gpu.device, &FILL)?;
         gpu.check()?;
-        Ok(Self { fill, nothing: storage(&gpu.device, "no anchor", 4, wgpu::BufferUsages::empty()) })
+        Ok(Self { fill, nothing: storage(&gpu.device, "no anchor", 16, wgpu::BufferUsages::empty()) })
     }
 
     /// Encodes the filling of an anchor by at most two that are next to it.
@@ -58,19 +58,20 @@ impl FillPass {
             slab_count: own.slabs.count,
             ..FillUniform::zeroed()
         };
-        let mut buffers = [&self.nothing; 2];
+        let mut planes = [0, 1].map(|_| self.nothing.as_entire_binding());
         for (i, (source, slabs)) in neighbours.iter().enumerate() {
             uniform.widths[i] = slabs.size[0];
             uniform.offsets_px[i] = source.offset_px as f32;
             uniform.per_slab_px[i] = source.per_slab_px as f32;
-            buffers[i] = &slabs.cells;
+            planes[i] = slabs.planes();
         }
         let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("fill"),
             contents: bytemuck::bytes_of(&uniform),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let resources = [&uniform, &own.cells, buffers[0], buffers[1]].map(wgpu::Buffer::as_entire_binding);
+        let [first, second] = planes;
+        let resources = [uniform.as_entire_binding(), own.bits(), own.planes(), first, second];
         let [width, height] = own.size;
         self.fill.dispatch(encoder, &self.fill.bind(&gpu.device, &resources), [width, height, 1]);
     }

@@ -5,6 +5,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::readback::read_buffer;
 use crate::uniforms::PairUniform;
 use bytemuck::Zeroable as _;
+use std::num::NonZero;
 use wheatstone_core::lightfield::anchors::{DepthSlabs, SlabPicture};
 
 /// Side of a square that bits are kept for, pixels: `SLAB_SQUARE` of `lib/slab_cells.wgsl`.
@@ -24,16 +25,16 @@ pub(crate) struct GpuSlabs {
     pub(super) slabs: DepthSlabs,
 }
 
-/// Words before the first cell: a whole number of stacks.
-fn words_of_bits(size: [u32; 2]) -> u64 {
+/// Bytes before the planes: a binding may begin there.
+fn bytes_of_bits(size: [u32; 2]) -> u64 {
     let words = size.map(|side| u64::from(side.div_ceil(SQUARE))).iter().product::<u64>() * WORDS;
-    words.next_multiple_of(u64::from(STACK_ROWS))
+    4 * words.next_multiple_of(64)
 }
 
 /// Bytes of the slabs of a picture, whose rows are filled up to whole stacks; what hides the last of them takes as much as a slab.
 fn byte_size([width, height]: [u32; 2], slabs: &DepthSlabs) -> u64 {
     let planes = DepthSlabs { count: slabs.count + 1, ..*slabs };
-    4 * words_of_bits([width, height]) + planes.byte_size([width, height.next_multiple_of(STACK_ROWS)])
+    bytes_of_bits([width, height]) + planes.byte_size([width, height.next_multiple_of(STACK_ROWS)])
 }
 
 impl GpuSlabs {
@@ -59,6 +60,20 @@ impl GpuSlabs {
         Ok(Self { size, slabs: *slabs, ..self })
     }
 
+    /// The bits of squares.
+    pub(super) fn bits(&self) -> wgpu::BindingResource<'_> {
+        self.range(0, NonZero::new(bytes_of_bits(self.size)))
+    }
+
+    /// The planes.
+    pub(super) fn planes(&self) -> wgpu::BindingResource<'_> {
+        self.range(bytes_of_bits(self.size), None)
+    }
+
+    fn range(&self, offset: u64, size: Option<NonZero<u64>>) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &self.cells, offset, size })
+    }
+
     /// What a cast is told of them.
     pub(crate) fn uniform(&self) -> PairUniform {
         let DepthSlabs { nearest_per_m, thickness_per_m, count } = self.slabs;
@@ -81,7 +96,7 @@ impl GpuSlabs {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_buffer_to_buffer(&self.cells, 0, &buffer, 0, None);
         gpu.queue.submit([encoder.finish()]);
-        let first = words_of_bits(self.size) as usize;
+        let first = (bytes_of_bits(self.size) / 4) as usize;
         let words: Vec<u32> =
             read_buffer(gpu, &buffer, |bytes| bytemuck::cast_slice(bytes)[first..].to_vec())?;
         let mut picture = SlabPicture::clear(self.size, self.slabs.count);
