@@ -2,7 +2,7 @@ import package::lib::classify::{VALUE_OFFSET, may_be_visible};
 import package::lib::composite::{SEARCHES, blend, finish_ray, is_opaque, start_ray};
 import package::lib::ray::{Ray, ray_at};
 import package::lib::ray_state::{RayState, STRETCH};
-import package::lib::record::{end_recording, record};
+import package::lib::record::{begin_stretch, end_recording, record};
 import package::lib::skip::{next_run, start_walk};
 import package::lib::volume::{value_at};
 
@@ -21,7 +21,7 @@ fn accumulate(ray: Ray, begin: u32, end: u32, before: RayState) -> RayState {
             state.scalar = value_at(ray_at(ray, f32(run.begin) + VALUE_OFFSET - 1.0));
         }
         i = run.begin;
-        let stretch_end = min(i + STRETCH, run.end);
+        let stretch_end = min(min(i + STRETCH, run.end), begin_stretch(ray, i, state));
         while i < stretch_end {
             var value = 0.0;
             var is_found = false;

@@ -34,6 +34,10 @@ fn begin_recording(pixel: vec2u) {
     open_layer = OpenLayer(vec3f(0.0), 1.0, 0.0, 0.0, 0u, 0u);
 }
 
+fn begin_stretch(ray: Ray, i: u32, state: RayState) -> u32 {
+    return 0xffffffffu;
+}
+
 // Adds sample i, between two states of its ray.
 fn record(ray: Ray, i: u32, before: RayState, after: RayState) {
     let begins_m = ray_depth_m(ray, f32(i) - 0.5);

@@ -17,6 +17,10 @@ fn begin_recording(pixel: vec2u) {
     visible_from_m = NOWHERE_M;
 }
 
+fn begin_stretch(ray: Ray, i: u32, state: RayState) -> u32 {
+    return 0xffffffffu;
+}
+
 // Adds sample i, between two states of its ray.
 fn record(ray: Ray, i: u32, before: RayState, after: RayState) {
     let is_first = before.transmittance == 1.0 && after.transmittance < 1.0;

@@ -12,7 +12,7 @@ import package::lib::view::{view};
 const NO_SLAB: u32 = 0xffffffffu;
 
 // Behind every sample.
-const NO_END: f32 = 1e30;
+const NO_END: f32 = 4e9;
 
 // Steps of a channel of a cell.
 const CELL_STEPS: f32 = 255.0;
@@ -23,7 +23,7 @@ struct OpenSlab {
     color: vec3f,
     transmittance: f32,
     slab: u32,
-    // The first sample that may be behind it.
+    // The first sample behind it.
     end_sample: f32,
 }
 
@@ -43,37 +43,41 @@ fn begin_recording(pixel: vec2u) {
     is_first_slab = true;
 }
 
-// Adds sample i, between two states of its ray.
-fn record(ray: Ray, i: u32, before: RayState, after: RayState) {
-    // A loop and no branch: software Vulkan would find the slab of every sample.
-    var is_left = after.transmittance < before.transmittance && f32(i) >= open_slab.end_sample;
+// Begins samples from i on, of a ray in a state, and returns the first one that is in another slab.
+fn begin_stretch(ray: Ray, i: u32, state: RayState) -> u32 {
+    // A loop and no branch: software Vulkan would end slabs at every stretch.
+    var is_left = f32(i) >= open_slab.end_sample;
     while is_left {
+        if state.transmittance < open_slab.transmittance {
+            end_slab(state);
+        }
         let behind = view.pair.offset - view.pair.k / ray_depth_m(ray, f32(i));
         let slab = min(u32(max(behind, 0.0)), view.pair.count - 1u);
-        if slab != open_slab.slab {
-            end_slab(before);
-            open_slab = OpenSlab(before.color, before.transmittance, slab, 0.0);
-        }
-        open_slab.end_sample = max(end_sample(ray, slab), f32(i + 1u));
+        open_slab = OpenSlab(state.color, state.transmittance, slab, max(end_sample(ray, slab), f32(i + 1u)));
         is_left = false;
     }
+    return u32(open_slab.end_sample);
 }
+
+fn record(ray: Ray, i: u32, before: RayState, after: RayState) {}
 
 // The first sample behind a slab.
 fn end_sample(ray: Ray, slab: u32) -> f32 {
     let per_k = view.pair.offset - f32(slab + 1u);
     let is_last = per_k <= 0.0 || slab + 1u >= view.pair.count || ray.step_depth_m <= 0.0;
     let sample = (view.pair.k / per_k - ray.first_depth_m) / ray.step_depth_m;
-    return select(floor(sample), NO_END, is_last);
+    return select(min(ceil(sample), NO_END), NO_END, is_last);
 }
 
 fn end_recording(state: RayState) {
-    if open_slab.slab != NO_SLAB {
+    if state.transmittance < open_slab.transmittance {
         let color = end_slab(state);
         if state.is_finished == 1u {
             let end = stack_of_ends(vec2u(view.width, view.height), slabs_pixel.y / STACK_ROWS);
             atomicStore(&slab_cells[word_of(end)], hider(open_slab.slab, color.rgb / color.a));
         }
+    }
+    if any(filled_slabs != vec2u(0u)) {
         let squares = slab_squares(vec2u(view.width, view.height));
         let square = slabs_pixel / SLAB_SQUARE;
         let at = 2u * (square.y * squares.x + square.x);
