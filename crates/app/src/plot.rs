@@ -35,25 +35,37 @@ pub(crate) struct Line {
     pub(crate) points: Vec<(f64, f64)>,
 }
 
-/// Draws lines over even axes; the vertical one has 0 in it.
+/// Part of a chart's height that the name of a line takes.
+const NAME_HEIGHT: f64 = 0.08;
+
+/// Draws lines over even axes, with room for their names above; the vertical one has 0 in it.
 pub(crate) fn even_chart(path: &Path, labels: &Labels<'_>, lines: &[Line]) -> Result<(), Failure> {
     let (lowest, highest) = span(lines, |point| point.1);
-    write_chart(path, labels, lines, 1.1 * lowest.min(0.0)..1.1 * highest.max(f64::EPSILON))
+    let room = 1.1 + NAME_HEIGHT * lines.len() as f64;
+    let y = 1.1 * lowest.min(0.0)..room * highest.max(f64::EPSILON);
+    write_chart(path, labels, lines, y, SeriesLabelPosition::UpperRight)
 }
 
 /// Draws lines over a logarithmic vertical axis, with room for their names below.
 pub(crate) fn logarithmic_chart(path: &Path, labels: &Labels<'_>, lines: &[Line]) -> Result<(), Failure> {
     let (lowest, highest) = span(lines, |point| point.1);
-    write_chart(path, labels, lines, (0.2 * lowest..1.5 * highest).log_scale())
+    let y = (0.2 * lowest..1.5 * highest).log_scale();
+    write_chart(path, labels, lines, y, SeriesLabelPosition::LowerRight)
 }
 
-fn write_chart<Y>(path: &Path, labels: &Labels<'_>, lines: &[Line], y: Y) -> Result<(), Failure>
+fn write_chart<Y>(
+    path: &Path,
+    labels: &Labels<'_>,
+    lines: &[Line],
+    y: Y,
+    names: SeriesLabelPosition,
+) -> Result<(), Failure>
 where
     Y: AsRangedCoord<Value = f64>,
     Y::CoordDescType: ValueFormatter<f64>,
 {
     let mut svg = String::new();
-    draw(&mut svg, labels, lines, y)
+    draw(&mut svg, labels, lines, y, names)
         .map_err(|error| anyhow::anyhow!("cannot draw {}: {error}", path.display()))?;
     write_atomically(path, |writer| writer.write_all(svg.as_bytes()))?;
     Ok(())
@@ -64,6 +76,7 @@ fn draw<Y>(
     labels: &Labels<'_>,
     lines: &[Line],
     y: Y,
+    names: SeriesLabelPosition,
 ) -> Result<(), Box<dyn std::error::Error>>
 where
     Y: AsRangedCoord<Value = f64>,
@@ -96,7 +109,7 @@ where
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerRight)
+        .position(names)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK.mix(0.3))
         .draw()?;

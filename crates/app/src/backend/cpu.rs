@@ -41,7 +41,7 @@ struct Scene {
 /// What is far away.
 struct Detail {
     level_of_detail: LevelOfDetail,
-    /// Settings for the coarser levels, each of its own engine.
+    /// Settings for each level of steps above 0, of the engine of the level that they sample.
     coarser: Vec<Shot>,
 }
 
@@ -94,15 +94,25 @@ impl<'v> CpuEngine<'v> {
         self.coarser.extend(coarser.iter().map(|volume| Self::new(volume, storage)));
     }
 
+    /// Levels of the volume, itself included.
+    pub(super) fn level_count(&self) -> usize {
+        1 + self.coarser.len()
+    }
+
     pub(super) fn prepare_detail(
         &mut self,
         parameters: &CastParameters,
         skipping: &Skipping,
         level_of_detail: LevelOfDetail,
     ) -> Shot {
-        let coarser = (1..)
-            .zip(&mut self.coarser)
-            .map(|(level, engine)| engine.prepare(&parameters.of_level(level), skipping))
+        let coarser = (1..level_of_detail.level_count(self.level_count()))
+            .map(|level| {
+                let parameters = parameters.of_level(level);
+                match level_of_detail.sampled(level) {
+                    0 => self.prepare(&parameters, skipping),
+                    sampled => self.coarser[sampled - 1].prepare(&parameters, skipping),
+                }
+            })
             .collect();
         let shot = self.prepare(parameters, skipping);
         self.scenes[shot.0].detail = Some(Detail { level_of_detail, coarser });
@@ -216,14 +226,15 @@ impl<'v> CpuEngine<'v> {
     }
 
     fn cast_detail(&self, scene: &Scene, detail: &Detail, view: &View) -> Cast {
-        let slabs = detail.level_of_detail.slabs(view, &scene.parameters, 1 + self.coarser.len());
+        let slabs = detail.level_of_detail.slabs(view, &scene.parameters, 1 + detail.coarser.len());
         slabs.iter().fold(Cast::nothing(view.size), |front, slab| {
-            let (engine, scene) = match slab.level.checked_sub(1) {
-                None => (self, scene),
-                Some(coarser) => {
-                    let engine = &self.coarser[coarser];
-                    (engine, &engine.scenes[detail.coarser[coarser].0])
-                }
+            let engine = match detail.level_of_detail.sampled(slab.level) {
+                0 => self,
+                sampled => &self.coarser[sampled - 1],
+            };
+            let scene = match slab.level {
+                0 => scene,
+                level => &engine.scenes[detail.coarser[level - 1].0],
             };
             engine.caster.cast_behind(&scene.parameters, &scene.aids(), &slab.part_of(view), front)
         })

@@ -62,7 +62,7 @@ struct Detail {
     levels: Vec<Level>,
 }
 
-/// Settings for a level: as the nearest slab, and behind nearer ones.
+/// Settings for a level of steps: as the nearest slab, and behind nearer ones.
 struct Level {
     alone: Arc<Prepared>,
     behind: Prepared,
@@ -123,6 +123,11 @@ impl GpuEngine {
         Ok(())
     }
 
+    /// Levels of the volume, itself included.
+    pub(super) fn level_count(&self) -> usize {
+        self.levels.len()
+    }
+
     pub(super) fn prepare(
         &mut self,
         parameters: &CastParameters,
@@ -141,10 +146,11 @@ impl GpuEngine {
     ) -> Result<Shot, GpuError> {
         let mut levels = Vec::new();
         let scene = self.scene(0, parameters, skipping)?;
-        for level in 0..self.levels.len() {
+        for level in 0..level_of_detail.level_count(self.level_count()) {
+            let sampled = level_of_detail.sampled(level);
             let alone = match level {
                 0 => Arc::clone(&scene.prepared),
-                _ => self.scene(level, &parameters.of_level(level), skipping)?.prepared,
+                _ => self.scene(sampled, &parameters.of_level(level), skipping)?.prepared,
             };
             let behind = self.renderer.behind(&self.gpu, &alone)?;
             levels.push(Level { alone, behind });

@@ -2,6 +2,7 @@
 
 mod cpu;
 mod gpu;
+mod resolved;
 
 use crate::failure::Failure;
 use crate::pairing::Pairing;
@@ -10,6 +11,7 @@ use clap::ValueEnum;
 use cpu::CpuEngine;
 use gpu::GpuEngine;
 pub(crate) use gpu::{GpuWarping, LiveEngine};
+pub(crate) use resolved::ResolvedShot;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 use wheatstone_core::cast::CastParameters;
@@ -307,6 +309,14 @@ impl<'v> Engine<'v> {
                 engine.add_levels(coarser);
                 Ok(())
             }
+        }
+    }
+
+    /// Levels of the volume, itself included.
+    fn level_count(&self) -> usize {
+        match self {
+            Self::Gpu(engine) => engine.level_count(),
+            Self::Cpu(engine) => engine.level_count(),
         }
     }
 

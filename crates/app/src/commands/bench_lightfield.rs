@@ -1,7 +1,8 @@
-//! `bench lightfield`: what deriving views of light-field displays from a few casts saves and how far they are off, and what the
-//! display of projectors of LF takes with and without regard to what it resolves.
+//! `bench lightfield`: what deriving views of light-field displays from a few casts saves and how far they are off, what the
+//! display of projectors of LF takes with and without regard to what it resolves, and what eyes before it see.
 
 mod charts;
+mod eyes;
 mod full_frame;
 mod row;
 mod views;
@@ -22,6 +23,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use views::Measurement;
 use wheatstone_core::cast::CastParameters;
+use wheatstone_core::lightfield::projectors::Description;
 use wheatstone_core::lightfield::quilt::Model;
 use wheatstone_core::lightfield::{ProjectorArray, QuiltDisplay};
 use wheatstone_core::scene::{Settings, Shading};
@@ -29,11 +31,13 @@ use wheatstone_core::transfer::BenchmarkRamp;
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::Gpu;
 
-/// Time and error of the views of a quilt from anchors against a cast for each, and the time of a full frame of projectors.
+/// Time and error of the views of a quilt from anchors against a cast for each, and of a full frame of projectors.
 ///
 /// Views are those of a Looking Glass Portrait, as many as are asked for over its whole view cone, of a volume that fills the screen.
 /// Both methods make all views in turn, in changing order; times are medians. Before that, untimed, each view is made by both, for the
-/// error: DSSIM over the views. GPU only; that includes software Vulkan.
+/// error: DSSIM over the views. Then the display of Agus et al. 2008 is cast, at full resolution and at its own: its time, and
+/// what eyes at and around the place that it is made for see, against a perspective view from there. GPU only; that includes
+/// software Vulkan.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     wheatstone bench lightfield bonsai.nii.gz --up A --json\n  \
@@ -68,7 +72,7 @@ pub(crate) struct LightfieldArgs {
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000), allow_negative_numbers = true)]
     rounds: u32,
 
-    /// How many times smaller the sides of the projectors' pictures are than 320x240 pixels; 0 leaves the full frame out.
+    /// How many times smaller the sides of the projectors' pictures are than 320x240 pixels; 0 leaves the projectors out.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=32), allow_negative_numbers = true)]
     projector_scale: u32,
 
@@ -78,7 +82,8 @@ pub(crate) struct LightfieldArgs {
     #[command(flatten)]
     skip: SkipArgs,
 
-    /// Write charts to this folder: speed-up over the number of views, and error over the views.
+    /// Write charts to this folder: speed-up over the number of views, error over the views, and over the place of an eye before the
+    /// projectors.
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
 
@@ -98,6 +103,7 @@ pub(crate) fn run(args: &LightfieldArgs) -> Result<(), Failure> {
     if let Some(folder) = &args.plot {
         charts::draw_speed_ups(folder, &rows)?;
         charts::draw_errors(folder, &rows)?;
+        charts::draw_eyes(folder, &full_frames)?;
     }
     if args.json {
         return print_json(&json!({
@@ -112,8 +118,9 @@ pub(crate) fn run(args: &LightfieldArgs) -> Result<(), Failure> {
     tables.push(row::to_table(&rows));
     if !full_frames.is_empty() {
         tables.push(full_frame::to_table(&full_frames));
+        tables.push(eyes::to_table(&full_frames));
     }
-    print(&tables.join("\n"))
+    print(&tables.join("\n\n"))
 }
 
 impl LightfieldArgs {
@@ -122,6 +129,18 @@ impl LightfieldArgs {
         let portrait = Model::Portrait.display();
         let [width, height] = portrait.tile_size_px().map(|side| (side / self.scale).max(1));
         QuiltDisplay { columns: views, rows: 1, quilt_size_px: [views * width, height], ..portrait }
+    }
+
+    /// The projectors of LF with pixels that are so many times as wide: those resolve as much less on the screen.
+    fn projectors(&self) -> Result<ProjectorArray, Failure> {
+        let full = ProjectorArray::of_paper();
+        let description = full.description();
+        ProjectorArray::new(Description {
+            pixel_size_m: description.pixel_size_m * f64::from(self.projector_scale),
+            image_size_px: description.image_size_px.map(|side| (side / self.projector_scale).max(1)),
+            ..description.clone()
+        })
+        .map_err(Failure::input)
     }
 
     fn measure_volume(
@@ -178,9 +197,11 @@ impl LightfieldArgs {
         resolved: &Resolved,
         skipping: &Skipping,
     ) -> Result<Vec<FullFrame>, Failure> {
-        if resolved.transfer.is_2d() {
-            eprintln!("note: no full frame of {name}: levels have transfer functions of one dimension");
-            return Ok(Vec::new());
+        let has_levels = !resolved.transfer.is_2d();
+        if !has_levels {
+            eprintln!(
+                "note: {name} at full resolution only: levels have transfer functions of one dimension"
+            );
         }
         let settings = Settings::new(resolved.window, resolved.transfer.clone());
         let parameters = CastParameters::new(&settings, &self.aim.placement(volume));
@@ -191,8 +212,8 @@ impl LightfieldArgs {
             parameters: &parameters,
             skipping,
             turned,
-            array: &ProjectorArray::of_paper(),
-            scale: self.projector_scale,
+            array: &self.projectors()?,
+            has_levels,
             rounds: self.rounds,
         })
     }

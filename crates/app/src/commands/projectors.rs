@@ -1,6 +1,6 @@
 //! `projectors`: a volume to the frames of a display of projectors.
 
-use crate::backend::{BackendChoice, Engine, Job, Leaping, make_on, median, milliseconds};
+use crate::backend::{BackendChoice, Engine, Job, Leaping, ResolvedShot, make_on, median, milliseconds};
 use crate::camera::AimArgs;
 use crate::display::ArrayArgs;
 use crate::failure::Failure;
@@ -17,7 +17,6 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::detail::LevelOfDetail;
 use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::ProjectorArray;
 use wheatstone_core::lightfield::calibration::Corrections;
@@ -110,6 +109,8 @@ struct Stage {
 /// What was made and how long it took.
 struct Made {
     projectors_ms: Vec<f64>,
+    /// Over those at full detail.
+    longest_step: usize,
     samples: u64,
     map_reads: u64,
     leaping: Leaping,
@@ -192,15 +193,19 @@ impl ProjectorsArgs {
         skipping: &Skipping,
     ) -> Result<Made, Failure> {
         engine.add_levels(coarser)?;
-        let shot = match stage.resolution {
-            ResolutionName::Full => engine.prepare(parameters, skipping)?,
+        let ResolvedShot { shot, longest_step } = match stage.resolution {
+            ResolutionName::Full => {
+                ResolvedShot { shot: engine.prepare(parameters, skipping)?, longest_step: 1 }
+            }
             ResolutionName::Matched => {
-                let resolved = LevelOfDetail::Resolved(stage.array.resolution());
-                engine.prepare_detail(parameters, skipping, resolved)?
+                let first = stage.stand.displays_from_world().next().unwrap_or_default();
+                let views = stage.array.views(first);
+                engine.prepare_resolved(parameters, skipping, stage.array.resolution(), &views)?
             }
         };
         let mut made = Made {
             projectors_ms: Vec::new(),
+            longest_step,
             samples: 0,
             map_reads: 0,
             leaping: engine.leaping(shot).clone(),
@@ -277,6 +282,7 @@ impl ProjectorsArgs {
                 "frame_size": description.packing.frame_size_px,
                 "frames": array.batches().len(),
                 "resolution": stage.resolution.name(),
+                "longest_step": made.longest_step,
                 "volume_size_m": stand.volume_size_m,
                 "behind_screen_m": -stand.reach_m.start,
                 "before_screen_m": stand.reach_m.end,

@@ -325,8 +325,7 @@ fn bench_lightfield_compares_anchors_with_casts_of_every_view() {
     let bench = Bench::new();
     let base =
         ["bench", "lightfield", "sphere.nrrd", "--tf", "ramp:0.2..0.9", "--views", "2,12", "--scale", "8"];
-    // Pixels of 4 cm on the screen: longer than two voxels.
-    let small = ["--shadings", "none", "--rounds", "1", "--projector-scale", "32", "--plot", "plots"];
+    let small = ["--shadings", "none", "--rounds", "1", "--projector-scale", "16", "--plot", "plots"];
     let run = bench.run(&[&base[..], &small, &["--json"]].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stderr.contains("2 views of sphere have no anchors"), "{}", run.stderr);
@@ -340,11 +339,24 @@ fn bench_lightfield_compares_anchors_with_casts_of_every_view() {
     assert!(row["dssim_worst"].as_f64() < Some(0.03) && row["dssim_mean"].as_f64() > Some(0.0), "{row}");
     assert!(row["ms_per_frame"].as_f64() > row["anchor_ms"].as_f64(), "{row}");
     let frames = json["full_frames"].as_array().unwrap();
+    let resolutions: Vec<_> = frames.iter().map(|frame| frame["resolution"].as_str()).collect();
+    assert_eq!(resolutions, [Some("full"), Some("matched")]);
     let samples: Vec<_> = frames.iter().map(|frame| frame["samples"].as_u64()).collect();
-    assert!(samples.len() == 2 && samples[1] < samples[0] && samples[1] > Some(0), "{frames:?}");
-    assert!(
-        bench.path("plots/sphere-speed-up.svg").exists() && bench.path("plots/sphere-error.svg").exists()
-    );
+    assert!(samples[1] <= samples[0] && samples[1] > Some(0), "{frames:?}");
+    for frame in frames {
+        let eyes = frame["eyes"].as_array().unwrap();
+        assert!(eyes.len() == 33 && eyes.iter().all(|eye| keys(eye) == ["dssim", "eye_m", "walk"]));
+        let errors = |walk: &str| -> Vec<f64> {
+            let of_walk = eyes.iter().filter(|eye| eye["walk"] == walk);
+            of_walk.map(|eye| eye["dssim"].as_f64().unwrap()).collect()
+        };
+        // Each walk passes the virtual viewer's place, and further up and down there is more error.
+        let [up, sideways, away] = ["up", "sideways", "away"].map(errors);
+        assert!(up[5] == sideways[5] && up[5] == away[5], "{eyes:?}");
+        assert!(up[0] > up[5] && up[10] > up[5], "{up:?}");
+    }
+    let plots = ["speed-up", "error", "eye-up", "eye-sideways", "eye-away"];
+    assert!(plots.iter().all(|plot| bench.path(&format!("plots/sphere-{plot}.svg")).exists()));
 }
 
 #[test]

@@ -12,28 +12,52 @@ pub enum LevelOfDetail {
     /// Pixels that a voxel covers, and a step at one sample per voxel: between √½ and √2 times as many where there are
     /// levels for it.
     Pixels(f64),
-    /// As fine as a light-field display resolves at each depth from its screen (LF Eq. 5), for the views of its projectors.
-    Resolved(Resolution),
+    /// By steps as long as what a light-field display resolves at each depth from its screen (LF Eq. 5), through voxels half as
+    /// long, for the views of its projectors.
+    Resolved {
+        /// What the display resolves.
+        resolution: Resolution,
+        /// Steps are at most 2ˡ times as long as at full detail ([`coarsest_alike`](crate::lightfield::coarsest_alike)).
+        coarsest: usize,
+    },
 }
 
 /// A part of a view's depths that is cast of one level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slab {
-    /// 0 is the volume itself; voxels of level l are 2ˡ times as long.
+    /// Steps of level l are 2ˡ times as long as at full detail, which is 0. The level of the volume that they sample, whose voxels are
+    /// as many times as long, is [`LevelOfDetail::sampled`].
     pub level: usize,
     /// Depths along view −Z, metres.
     pub depths_m: Range<f64>,
 }
 
 impl LevelOfDetail {
-    /// The slabs of a view, from near to far, of a volume of so many levels; at least one, and together all depths.
+    /// How many levels of steps there are for a volume of so many levels, itself included.
+    pub fn level_count(&self, volumes: usize) -> usize {
+        match self {
+            Self::Pixels(_) => volumes,
+            Self::Resolved { coarsest, .. } => volumes.min(*coarsest) + 1,
+        }
+    }
+
+    /// The level of the volume that steps of a level sample. What a display resolves takes two voxels: means over all of it would give
+    /// thin things other colours.
+    pub fn sampled(&self, level: usize) -> usize {
+        match self {
+            Self::Pixels(_) => level,
+            Self::Resolved { .. } => level.saturating_sub(1),
+        }
+    }
+
+    /// The slabs of a view, from near to far, of so many levels of steps; at least one, and together all depths.
     pub fn slabs(&self, view: &View, parameters: &CastParameters, level_count: usize) -> Vec<Slab> {
         let (near_m, far_m) = view.depths_m(&parameters.visible_corners_world());
         let view_per_world = view.view_from_world.matrix3.determinant().abs().cbrt();
         let (voxel_length_m, depths_m) = (parameters.voxel_length_m() * view_per_world, near_m..far_m);
         match self {
             Self::Pixels(pixels) => Footprint::of(view).slabs(*pixels, voxel_length_m, depths_m, level_count),
-            Self::Resolved(resolution) => resolution.slabs(voxel_length_m, &depths_m, level_count),
+            Self::Resolved { resolution, .. } => resolution.slabs(voxel_length_m, &depths_m, level_count),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What a display with beams of finite width resolves at which distance from its screen.
+//! What a display with beams of finite width resolves at which distance from its screen, and how much less it may be shown by.
 
 use crate::detail::{Footprint, Slab};
 use std::ops::Range;
@@ -12,7 +12,7 @@ pub struct Resolution {
     pub beam_angle_rad: f64,
 }
 
-/// Voxels over s(z): the coarsest level whose voxels are not longer (LF Eq. 5).
+/// Steps over s(z): the coarsest level whose steps are not longer (LF Eq. 5).
 pub const RESOLVED_PIXELS: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Resolution {
@@ -25,15 +25,15 @@ impl Resolution {
         2.0 * (0.5 * self.beam_angle_rad).tan()
     }
 
-    /// The level of a volume with voxels of a length at a distance from the screen, of so many levels (LF Eq. 5).
+    /// The level of steps through voxels of a length at a distance from the screen, of so many levels (LF Eq. 5).
     pub fn level(&self, from_screen_m: f64, voxel_length_m: f64, level_count: usize) -> usize {
         let level = (self.size_m(from_screen_m) / voxel_length_m).log2().floor().max(0.0) as usize;
         level.min(level_count.saturating_sub(1))
     }
 
-    /// Slabs of depth along −Z from the screen, from near to far, and the levels of a volume that they are cast of: in each of them
-    /// the coarsest one whose voxels are not longer than s(z) anywhere in it, so that steps of a voxel leave out nothing that the
-    /// display could show. The volume is between two depths, metres; together the slabs are all depths.
+    /// Slabs of depth along −Z from the screen, from near to far, and the levels of the steps that they are cast by: in each of them
+    /// the coarsest one whose steps, of a voxel at level 0, are not longer than s(z) anywhere in it, so that they leave out nothing
+    /// that the display could show. The volume is between two depths, metres; together the slabs are all depths.
     pub fn slabs(&self, voxel_length_m: f64, depths_m: &Range<f64>, level_count: usize) -> Vec<Slab> {
         let footprint = Footprint { at_eye_m: self.pixel_size_m, per_metre: self.per_metre() };
         let away_to =
@@ -55,4 +55,26 @@ impl Resolution {
     pub fn field_of_depth_m(&self, size_m: f64) -> f64 {
         ((size_m - self.pixel_size_m) / self.per_metre()).max(0.0)
     }
+}
+
+/// DSSIM by which longer steps may take a projector's picture further from the truth. An eye sees strips of such pictures, so that what
+/// it sees is then further off by about as much.
+pub const MOST_LOST: f64 = 0.0035;
+
+/// The coarsest level of steps, of those up to a last one, until which a projector's picture is about as near to the truth as at full
+/// detail: thin things may bear no longer ones, whatever the display resolves, if the transfer function makes much of them.
+///
+/// `off` tells how far the picture by steps that are at most of a level is from the truth, which has several rays in each pixel: their
+/// DSSIM.
+///
+/// # Errors
+/// Those of `off`.
+pub fn coarsest_alike<E>(last: usize, mut off: impl FnMut(usize) -> Result<f64, E>) -> Result<usize, E> {
+    let bearable = off(0)? + MOST_LOST;
+    for level in 1..=last {
+        if off(level)? > bearable {
+            return Ok(level - 1);
+        }
+    }
+    Ok(last)
 }

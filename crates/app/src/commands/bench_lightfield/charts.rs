@@ -1,5 +1,7 @@
-//! Charts: what anchors save, and how far their views are off.
+//! Charts: what anchors save, how far their views are off, and how far what eyes see of projectors is.
 
+use super::eyes::Walk;
+use super::full_frame::FullFrame;
 use super::row::{Method, Row};
 use crate::failure::Failure;
 use crate::output::file_in;
@@ -12,7 +14,7 @@ pub(super) fn draw_speed_ups(folder: &Path, rows: &[Row]) -> Result<(), Failure>
         let of_shading = rows.chunk_by(|a, b| a.shading == b.shading);
         let lines: Vec<Line> = of_shading
             .map(|rows| Line {
-                name: rows[0].shading.clone(),
+                name: format!("{} shading", rows[0].shading),
                 points: of_anchors(rows).map(|row| (f64::from(row.views), row.speed_up)).collect(),
             })
             .filter(|line| !line.points.is_empty())
@@ -31,13 +33,36 @@ pub(super) fn draw_errors(folder: &Path, rows: &[Row]) -> Result<(), Failure> {
         let lines: Vec<Line> = of_anchors(rows)
             .filter(|row| Some(row.views) == most)
             .map(|row| Line {
-                name: row.shading.clone(),
+                name: format!("{} shading", row.shading),
                 points: (0..).map(f64::from).zip(row.errors.iter().copied()).collect(),
             })
             .collect();
         let title = format!("{}: error of {} anchors", rows[0].volume, anchor_count(rows));
         let labels = Labels { title: &title, x: "view", y: "DSSIM" };
         draw(folder, &format!("{}-error.svg", rows[0].volume), &labels, &lines)?;
+    }
+    Ok(())
+}
+
+/// The error of what an eye sees of the full frame, over its place, for each volume and each of its walks.
+pub(super) fn draw_eyes(folder: &Path, frames: &[FullFrame]) -> Result<(), Failure> {
+    for frames in frames.chunk_by(|a, b| a.volume == b.volume) {
+        let FullFrame { volume, projectors, size: [width, height], .. } = &frames[0];
+        for walk in Walk::ALL {
+            let (moved, x) = match walk {
+                Walk::Up => ("up and down", "height above the middle of the screen, cm"),
+                Walk::Sideways => ("to the sides", "to the right of the middle of the screen, cm"),
+                Walk::Away => ("back and forth", "distance from the screen, cm"),
+            };
+            let title = format!("{volume} on {projectors} projectors of {width}x{height}: eye moved {moved}");
+            let line = |frame: &FullFrame| Line {
+                name: format!("{} resolution", frame.resolution),
+                points: frame.on(walk).map(|sight| (walk.along_cm(sight.eye_m), sight.dssim)).collect(),
+            };
+            let lines: Vec<Line> = frames.iter().map(line).collect();
+            let labels = Labels { title: &title, x, y: "DSSIM from a perspective view" };
+            draw(folder, &format!("{volume}-eye-{}.svg", walk.name()), &labels, &lines)?;
+        }
     }
     Ok(())
 }
