@@ -15,7 +15,7 @@ use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::Settings;
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
-use wheatstone_core::volume::{Grid, Volume, Voxels};
+use wheatstone_core::volume::Volume;
 
 const SIZE: [u32; 2] = [80, 60];
 
@@ -111,19 +111,19 @@ struct Deep {
     array: ProjectorArray,
     /// The volume and its coarser levels.
     casters: Vec<Caster>,
-    display_from_world: DAffine3,
 }
 
 impl Deep {
-    fn new(volume: &Volume, side_m: f64, display_from_world: DAffine3) -> Self {
-        let scene = Scene::new(volume, side_m, &Settings::new(volume.full_window(), soft()));
+    /// 10 cm before and behind the screen, where s(z) is several times the pixel.
+    fn new(volume: &Volume) -> Self {
+        let scene = Scene::new(volume, 0.2, &Settings::new(volume.full_window(), soft()));
         let mut casters = vec![Caster::new(volume)];
         casters.extend(volume.coarser_levels().iter().map(Caster::new));
-        Self { scene, array: display(24, 2.4, SIZE), casters, display_from_world }
+        Self { scene, array: display(24, 2.4, SIZE), casters }
     }
 
     fn views(&self) -> Vec<View> {
-        self.array.views(self.display_from_world)
+        self.array.views(DAffine3::IDENTITY)
     }
 
     fn detail(&self, coarsest: usize) -> LevelOfDetail {
@@ -183,8 +183,7 @@ fn what_the_display_cannot_resolve_need_not_be_sampled() {
 
 /// Casts a volume at the display's resolution: fewer samples, and to an eye hardly another picture.
 fn matched_resolution(phantom: Phantom, most: f64) {
-    // 10 cm before and behind the screen, where s(z) is several times the pixel.
-    let deep = Deep::new(&phantom.cube(128).unwrap(), 0.2, DAffine3::IDENTITY);
+    let deep = Deep::new(&phantom.cube(128).unwrap());
     let Deep { array, scene, casters, .. } = &deep;
     let (resolution, views) = (array.resolution(), deep.views());
     let voxel_length_m = scene.parameters.voxel_length_m();
@@ -230,43 +229,6 @@ fn matched_resolution(phantom: Phantom, most: f64) {
     let (of_full, of_matched) = (dssim(&full), dssim(&matched));
     assert!(of_samples <= most, "{phantom}: {of_samples} of the samples");
     assert!(of_matched - of_full <= 0.005, "{phantom}: {of_matched} instead of {of_full}");
-}
-
-#[test]
-fn coarser_voxels_keep_what_is_beyond_the_field_of_depth_from_flickering() {
-    // Noise finer than anything that is resolved 30 cm behind the screen.
-    let volume = noise(64);
-    let behind = DAffine3::from_translation(DVec3::Z * -0.3);
-    let deep = Deep::new(&volume, 0.1, behind);
-    let array = &deep.array;
-    let voxel_length_m = deep.scene.parameters.voxel_length_m();
-    assert!(array.resolution().field_of_depth_m(voxel_length_m) < 0.25);
-    let images = |coarsest: usize| {
-        let casts: Vec<Cast> = deep.views().iter().map(|view| deep.cast(view, coarsest)).collect();
-        over_black(&casts)
-    };
-    // Eyes a quarter of a beam apart.
-    let apart_m = 0.25 * array.description().beam_angle_deg.to_radians() * array.virtual_viewer_m().z;
-    let flicker = |images: &[RgbImage]| {
-        let seen = |step: u32| {
-            let eye_m = array.virtual_viewer_m() + DVec3::X * (apart_m * f64::from(step));
-            array.seen_from(&Eye::new(eye_m, SIZE).unwrap(), images).unwrap()
-        };
-        (0..4).map(|step| compare(&seen(step), &seen(step + 1)).unwrap().dssim()).sum::<f64>()
-    };
-    let (of_full, of_matched) = (flicker(&images(0)), flicker(&images(usize::MAX)));
-    assert!(of_matched < 0.5 * of_full, "{of_matched} instead of {of_full}");
-}
-
-/// A cube of values that have nothing to do with each other.
-fn noise(side: usize) -> Volume {
-    let mut state = 1_u32;
-    let value = |_| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 24) as u8
-    };
-    let voxels = Voxels::U8((0..side * side * side).map(value).collect());
-    Volume::new(Grid::centred([side; 3], [1.0; 3]).unwrap(), voxels).unwrap()
 }
 
 #[test]
