@@ -7,7 +7,7 @@ use crate::text_file::read_text_file;
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
-use wheatstone_core::lightfield::calibration::{Calibrated, Measurements};
+use wheatstone_core::lightfield::calibration::{Calibrated, Fit, Measurements};
 use wheatstone_io::write_atomically;
 
 /// Fit the description of a display of projectors to where its beams were measured to pass.
@@ -15,8 +15,8 @@ use wheatstone_io::write_atomically;
 #[command(after_help = "Examples:\n  \
     wheatstone calibrate measured.json --display designed.json -o fitted.json\n  \
     wheatstone projectors ct.nrrd -o frame.png --display fitted.json\n\n\
-    docs/displays.md has the form of the measurements: of each projector at least four pixels with places that their beams pass, at two \
-    depths or more.")]
+    docs/displays.md has the form of the measurements: of each projector at least four pixels with places that their beams pass: \
+    different columns and different rows at each of two depths.")]
 pub(crate) struct CalibrateArgs {
     /// What was measured.
     #[arg(value_name = "MEASUREMENTS.json")]
@@ -53,7 +53,16 @@ impl CalibrateArgs {
         let worst_m = fits.iter().map(|fit| fit.worst_m).fold(0.0, f64::max);
         let output = self.output.display();
         if self.json {
-            let fitted = |fit: &wheatstone_core::lightfield::calibration::Fit| json!({ "id": fit.projector.id, "rms_m": fit.rms_m, "worst_m": fit.worst_m });
+            let fitted = |fit: &Fit| {
+                json!({
+                    "id": fit.projector.id,
+                    "rms_m": fit.rms_m,
+                    "worst_m": fit.worst_m,
+                    "worst_correspondence": fit.worst,
+                    "emitter_deviation_m": fit.emitter_deviation_m,
+                    "image_deviation_m": fit.image_deviation_m,
+                })
+            };
             return print_json(&json!({
                 "projectors": array.projectors().len(),
                 "fitted": fits.iter().map(fitted).collect::<Vec<_>>(),
@@ -62,10 +71,13 @@ impl CalibrateArgs {
             }));
         }
         for fit in fits {
-            let [rms_mm, worst_mm] = [fit.rms_m, fit.worst_m].map(|metres| metres * 1e3);
+            let [rms_mm, worst_mm, edges_mm] =
+                [fit.rms_m, fit.worst_m, fit.image_deviation_m].map(|metres| metres * 1e3);
+            let [x_mm, y_mm, z_mm] = fit.emitter_deviation_m.map(|metres| metres * 1e3);
             eprintln!(
-                "projector {}: misses by {rms_mm:.4} mm rms, {worst_mm:.4} mm at most",
-                fit.projector.id
+                "projector {}: misses by {rms_mm:.4} mm rms, {worst_mm:.4} mm at most (correspondences[{}]); standard deviations: emitter \
+                {x_mm:.3}, {y_mm:.3}, {z_mm:.3} mm, edges of the image {edges_mm:.3} mm",
+                fit.projector.id, fit.worst
             );
         }
         eprintln!(

@@ -15,8 +15,12 @@ const SIZE: [u32; 2] = [320, 240];
 
 /// What a projector's beams pass at three depths, with an error of so many metres to each side.
 fn measured(projector: &Projector, error_m: f64) -> Vec<Correspondence> {
+    measured_at([-0.1, 0.0, 0.15], projector, error_m)
+}
+
+fn measured_at(depths_m: [f64; 3], projector: &Projector, error_m: f64) -> Vec<Correspondence> {
     let mut found = Vec::new();
-    for z in [-0.1, 0.0, 0.15] {
+    for z in depths_m {
         for (i, j) in (0..6).flat_map(|j| (0..8).map(move |i| (i, j))) {
             let pixel = DVec2::new(f64::from(i) * 45.0 + 2.5, f64::from(j) * 47.0 + 2.5);
             let screen_m = projector.screen_m(pixel, SIZE).extend(0.0);
@@ -91,16 +95,79 @@ fn what_tells_too_little_gives_one_clear_error() {
     let all = measured(&guess, 0.0);
     let fault = |measured: &[Correspondence]| Fit::of(&guess, SIZE, measured).unwrap_err().to_string();
     assert_eq!(fault(&all[..3]), "3 correspondences: at least 4 are needed");
-    assert_eq!(fault(&all[..48]), "the places do not tell where the emitter is: they must differ in z");
-    let one_row: Vec<_> = all.iter().copied().filter(|c| c.pixel.y < 10.0).collect();
-    assert!(
-        fault(&one_row).contains("image's top and bottom edges are: they must differ in their pixels' rows")
-    );
-    let one_column: Vec<_> = all.iter().copied().filter(|c| c.pixel.x < 10.0).collect();
-    assert!(fault(&one_column).contains("left and right edges are"));
+    let undetermined = "the correspondences do not determine the projector: pixels of different columns and of different rows at each \
+                        of two depths do";
+    let of = |measured: &[Correspondence], is_one: &dyn Fn(&Correspondence) -> bool| -> Vec<Correspondence> {
+        measured.iter().copied().filter(is_one).collect()
+    };
+    let (is_left, is_top) = (|c: &Correspondence| c.pixel.x < 10.0, |c: &Correspondence| c.pixel.y < 10.0);
+    let (on_screen, before) = (&all[48..96], &all[96..]);
+    assert_eq!(fault(&all[..48]), undetermined);
+    assert_eq!(fault(on_screen), undetermined);
+    assert_eq!(fault(&of(&all, &is_top)), undetermined);
+    assert_eq!(fault(&of(&all, &is_left)), undetermined);
+    // The top row at one depth, the bottom row at another; one beam alone off the screen.
+    let is_bottom = |c: &Correspondence| c.pixel.y > 200.0;
+    assert_eq!(fault(&[of(on_screen, &is_top), of(before, &is_bottom)].concat()), undetermined);
+    assert_eq!(fault(&[on_screen, &all[..1]].concat()), undetermined);
     let mut broken = all.clone();
     broken[7].place_m.x = f64::NAN;
     assert_eq!(fault(&broken), "correspondence 7 has a number that is not finite");
+    // Depths that are nearer each other than the places are exact.
+    let uncertain = fault(&measured_at([-3e-5, 0.0, 4.5e-5], &guess, 1e-4));
+    assert!(uncertain.contains("m with a standard deviation of"), "{uncertain}");
+}
+
+#[test]
+fn from_other_guesses_the_same_is_found() {
+    let true_one = ProjectorArray::of_paper().projectors()[90];
+    let [x, y, z] = true_one.emitter_m;
+    let all = measured(&true_one, 1e-4);
+    let from = |moved: [f64; 3]| {
+        let guess = Projector { emitter_m: [x + moved[0], y + moved[1], z + moved[2]], ..true_one };
+        Fit::of(&guess, SIZE, &all).unwrap()
+    };
+    let fit = from([0.0; 3]);
+    for moved in [[0.1, -0.08, 0.3], [-0.2, 0.3, -0.7]] {
+        assert!(most(&from(moved).projector, &fit.projector) < 1e-6, "{:?} {fit:?}", from(moved));
+    }
+    // Its deviations are those that it has.
+    for axis in 0..3 {
+        let (found, true_m) = (fit.projector.emitter_m[axis], true_one.emitter_m[axis]);
+        let deviation_m = fit.emitter_deviation_m[axis];
+        assert!((found - true_m).abs() < 3.0 * deviation_m, "{axis}: {found}, {true_m} ± {deviation_m}");
+        assert!(deviation_m > 1e-5 && deviation_m < 1e-3, "{axis}: ± {deviation_m}");
+    }
+    assert!(fit.image_deviation_m > 1e-6 && fit.image_deviation_m < 1e-4, "{fit:?}");
+}
+
+#[test]
+fn one_wrong_place_is_named_and_moves_the_projector_hardly() {
+    let true_one = ProjectorArray::of_paper().projectors()[40];
+    let mut all = measured(&true_one, 1e-4);
+    let without = Fit::of(&true_one, SIZE, &all).unwrap();
+    all[100].place_m.x += 0.05;
+    let fit = Fit::of(&true_one, SIZE, &all).unwrap();
+    assert_eq!(fit.worst, 100);
+    assert!((fit.worst_m - 0.05).abs() < 1e-3, "{fit:?}");
+    assert!(most(&fit.projector, &without.projector) < 5e-4, "{fit:?} {without:?}");
+}
+
+#[test]
+fn the_measurements_of_the_documentation_determine_their_projector() {
+    let documentation = include_str!("../../../../docs/displays.md");
+    let start = documentation.find("{\n  \"wheatstone_measurements\"").unwrap();
+    let length = documentation[start..].find("```").unwrap();
+    let measurements = Measurements::from_json(&documentation[start..start + length]).unwrap();
+    let paper = ProjectorArray::of_paper();
+    let from = |id: usize| {
+        let mut description = paper.description().clone();
+        description.projectors[0] = Projector { id: 0, ..paper.projectors()[id] };
+        measurements.fit(&ProjectorArray::new(description).unwrap()).unwrap().fits[0]
+    };
+    let (fit, other) = (from(48), from(55));
+    assert!(most(&fit.projector, &other.projector) < 1e-6, "{fit:?} {other:?}");
+    assert!(fit.worst_m < 1e-4 && (fit.projector.emitter_m[2] + 1.0).abs() < 0.01, "{fit:?}");
 }
 
 fn smooth() -> RgbImage {

@@ -4,7 +4,7 @@ use crate::lightfield::projectors::{ImageRect, Projector};
 use glam::{DVec2, DVec3};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
-use nalgebra::{Dyn, OMatrix, OVector, U7};
+use nalgebra::{Dyn, OMatrix, OVector, SMatrix, SymmetricEigen, U7};
 use thiserror::Error;
 
 /// A pixel, and a place in front of, on or behind the screen that its beam passes, as measured without the diffuser.
@@ -25,6 +25,12 @@ pub struct Fit {
     pub rms_m: f64,
     /// Largest such distance, metres.
     pub worst_m: f64,
+    /// Index of the correspondence that is missed by so much.
+    pub worst: usize,
+    /// Standard deviations of the emitter's x, y and z, as far as the misses tell, metres.
+    pub emitter_deviation_m: [f64; 3],
+    /// Largest standard deviation of an edge of the image, metres.
+    pub image_deviation_m: f64,
 }
 
 /// Why there is no fit.
@@ -40,28 +46,60 @@ pub enum FitError {
     /// A number that is not finite.
     #[error("correspondence {0} has a number that is not finite")]
     NotFinite(usize),
-    /// Measurements that leave the emitter or the image open.
-    #[error("the places do not tell where the {0}: they must differ {1}")]
-    Degenerate(&'static str, &'static str),
+    /// Measurements with which several emitters or images agree equally well.
+    #[error(
+        "the correspondences do not determine the projector: pixels of different columns and of different rows at each of two depths do"
+    )]
+    Undetermined,
+    /// Measurements that tell no more than that the emitter is somewhere behind the screen.
+    #[error(
+        "the emitter is at z = {z_m:.3} m with a standard deviation of {deviation_m:.3} m: more exact places are needed, or depths further \
+        apart"
+    )]
+    Uncertain {
+        /// Best z, metres.
+        z_m: f64,
+        /// Its standard deviation, metres.
+        deviation_m: f64,
+    },
     /// A search that did not end at a minimum, or at no projector.
     #[error("no emitter behind the screen agrees with the correspondences: {0}")]
     NotFound(String),
 }
 
-/// Least number of correspondences: two numbers each, for seven unknown ones.
+/// Least number of correspondences: two numbers each, for the unknown ones.
 const LEAST: usize = 4;
 
-/// Least difference between depths of the places, metres.
-const LEAST_DEPTH_M: f64 = 1e-4;
+/// Unknown numbers of a projector.
+const UNKNOWNS: usize = 7;
 
-/// Least difference between positions in the image, pixels.
-const LEAST_PX: f64 = 0.5;
+/// Least eigenvalue of the normal equations whose unknowns are scaled alike, over the largest: the square of how alike the effects of two
+/// unknowns may be.
+const LEAST_EIGENVALUE: f64 = 1e-12;
+
+/// Largest standard deviation of the emitter's distance from the screen, over that distance: three deviations are the whole way.
+const LARGEST_DEVIATION: f64 = 1.0 / 3.0;
+
+/// Misses up to so many times their median count in full.
+const TRUSTED_MEDIANS: f64 = 2.0;
+
+/// Misses up to here always count in full, metres.
+const EXACT_M: f64 = 1e-9;
+
+/// Change of the sum of squares, as a part of it, at which a search ends.
+const CONVERGED: f64 = 1e-12;
+
+/// Most searches, each with the weights that the one before gave, and the change of weights at which they end.
+const MOST_SEARCHES: usize = 50;
+const SAME_WEIGHT: f64 = 1e-6;
 
 /// Unknown numbers: the emitter's place, then the left, right, bottom and top edges of the image.
 type Unknowns = OVector<f64, U7>;
 
 struct Problem<'a> {
     correspondences: &'a [Correspondence],
+    /// By how much the miss of each correspondence counts.
+    weights: Vec<f64>,
     image_size_px: DVec2,
     unknowns: Unknowns,
 }
@@ -81,6 +119,48 @@ impl Problem<'_> {
         let emitter = DVec2::new(self.unknowns[0], self.unknowns[1]);
         emitter + (screen_m - emitter) * way - c.place_m.truncate()
     }
+
+    fn misses_m(&self) -> Vec<f64> {
+        self.correspondences.iter().map(|c| self.miss_m(c).length()).collect()
+    }
+
+    /// Weights for the misses as they are (Huber 1964): from a few times their median on a miss pulls no more the larger it is.
+    fn weights_of_misses(&self) -> Vec<f64> {
+        let misses_m = self.misses_m();
+        let mut sorted_m = misses_m.clone();
+        sorted_m.sort_unstable_by(f64::total_cmp);
+        let trusted_m = (TRUSTED_MEDIANS * sorted_m[sorted_m.len() / 2]).max(EXACT_M);
+        misses_m.into_iter().map(|miss_m| (trusted_m / miss_m).min(1.0)).collect()
+    }
+
+    /// The best unknowns for the weights.
+    fn searched(self) -> Result<Self, FitError> {
+        let (found, report) = LevenbergMarquardt::new().with_ftol(CONVERGED).minimize(self);
+        if report.termination.was_successful() {
+            Ok(found)
+        } else {
+            Err(FitError::NotFound(format!("{:?}", report.termination)))
+        }
+    }
+
+    /// Standard deviations of the unknowns, metres, from the misses and from how much each unknown changes them.
+    fn deviations_m(&self) -> Result<Unknowns, FitError> {
+        let jacobian = self.jacobian().ok_or(FitError::Undetermined)?;
+        let normal: SMatrix<f64, 7, 7> = jacobian.tr_mul(&jacobian);
+        let scale = normal.diagonal().map(|square: f64| square.sqrt().recip());
+        let scaled = SMatrix::<f64, 7, 7>::from_fn(|i, j| normal[(i, j)] * scale[i] * scale[j]);
+        if !scaled.iter().all(|entry| entry.is_finite()) {
+            return Err(FitError::Undetermined);
+        }
+        let eigenvalues = SymmetricEigen::new(scaled).eigenvalues;
+        if eigenvalues.min() < LEAST_EIGENVALUE * eigenvalues.max() {
+            return Err(FitError::Undetermined);
+        }
+        let inverse = scaled.try_inverse().ok_or(FitError::Undetermined)?;
+        let residuals = self.residuals().ok_or(FitError::Undetermined)?;
+        let variance = residuals.norm_squared() / (residuals.len() - UNKNOWNS) as f64;
+        Ok(Unknowns::from_fn(|i, _| (variance * inverse[(i, i)]).sqrt() * scale[i]))
+    }
 }
 
 impl LeastSquaresProblem<f64, Dyn, U7> for Problem<'_> {
@@ -97,14 +177,15 @@ impl LeastSquaresProblem<f64, Dyn, U7> for Problem<'_> {
     }
 
     fn residuals(&self) -> Option<OVector<f64, Dyn>> {
-        let misses = self.correspondences.iter().flat_map(|c| self.miss_m(c).to_array());
+        let weighted = |(c, weight): (&Correspondence, &f64)| (self.miss_m(c) * weight.sqrt()).to_array();
+        let misses = self.correspondences.iter().zip(&self.weights).flat_map(weighted);
         let residuals = OVector::<f64, Dyn>::from_iterator(2 * self.correspondences.len(), misses);
         residuals.iter().all(|miss| miss.is_finite()).then_some(residuals)
     }
 
     fn jacobian(&self) -> Option<OMatrix<f64, Dyn, U7>> {
         let mut jacobian = OMatrix::<f64, Dyn, U7>::zeros(2 * self.correspondences.len());
-        for (i, c) in self.correspondences.iter().enumerate() {
+        for (i, (c, weight)) in self.correspondences.iter().zip(&self.weights).enumerate() {
             let (share, screen_m, way) = self.beam(c);
             let emitter = DVec2::new(self.unknowns[0], self.unknowns[1]);
             // The way, 1 − z/E_z, changes with E_z by z/E_z².
@@ -114,17 +195,20 @@ impl LeastSquaresProblem<f64, Dyn, U7> for Problem<'_> {
             (jacobian[(x, 2)], jacobian[(y, 2)]) = (along.x, along.y);
             (jacobian[(x, 3)], jacobian[(x, 4)]) = (way * (1.0 - share.x), way * share.x);
             (jacobian[(y, 5)], jacobian[(y, 6)]) = (way * share.y, way * (1.0 - share.y));
+            let root = weight.sqrt();
+            jacobian.rows_mut(x, 2).iter_mut().for_each(|slope| *slope *= root);
         }
         jacobian.iter().all(|slope| slope.is_finite()).then_some(jacobian)
     }
 }
 
 impl Fit {
-    /// Fits a projector to correspondences by least squares (Levenberg and Marquardt), from a first guess such as its place by design.
+    /// Fits a projector to correspondences from a first guess such as its place by design: least squares (Levenberg and Marquardt), in
+    /// which what is far off all others hardly counts (iterated with the weights of Huber 1964).
     ///
     /// # Errors
-    /// Too few or degenerate correspondences: their places must be at two depths at least, their pixels in two columns and two rows; a
-    /// search that does not end behind the screen.
+    /// Too few correspondences, numbers that are not finite, places that do not determine the projector (pixels of different columns and
+    /// of different rows at each of two depths do) or are too inexact to, a search that does not end behind the screen.
     pub fn of(
         guess: &Projector,
         image_size_px: [u32; 2],
@@ -133,25 +217,41 @@ impl Fit {
         check(measured)?;
         let ImageRect { left_m, right_m, down_m, up_m } = guess.image;
         let [x_m, y_m, z_m] = guess.emitter_m;
-        let problem = Problem {
+        let mut fitted = Problem {
             correspondences: measured,
+            weights: vec![1.0; measured.len()],
             image_size_px: image_size_px.map(f64::from).into(),
             unknowns: Unknowns::from_column_slice(&[x_m, y_m, z_m, left_m, right_m, down_m, up_m]),
-        };
-        let (fitted, report) = LevenbergMarquardt::new().minimize(problem);
-        if !report.termination.was_successful() {
-            return Err(FitError::NotFound(format!("{:?}", report.termination)));
         }
+        .searched()?;
+        for _ in 1..MOST_SEARCHES {
+            let weights = fitted.weights_of_misses();
+            let change = weights.iter().zip(&fitted.weights).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if change < SAME_WEIGHT {
+                break;
+            }
+            fitted = Problem { weights, ..fitted }.searched()?;
+        }
+        let deviations_m = fitted.deviations_m()?;
         let [x_m, y_m, z_m, left_m, right_m, down_m, up_m] = fitted.unknowns.into();
         if z_m >= 0.0 || !fitted.unknowns.iter().all(|number: &f64| number.is_finite()) {
             return Err(FitError::NotFound(format!("the best is at z = {z_m} m")));
         }
+        let deviation_m = deviations_m[2];
+        if deviation_m > LARGEST_DEVIATION * -z_m {
+            return Err(FitError::Uncertain { z_m, deviation_m });
+        }
         let image = ImageRect { left_m, right_m, down_m, up_m };
-        let misses_m = || measured.iter().map(|c| fitted.miss_m(c).length());
+        let misses_m = fitted.misses_m();
+        let worst = (0..misses_m.len()).max_by(|&a, &b| misses_m[a].total_cmp(&misses_m[b])).unwrap_or(0);
         Ok(Self {
             projector: Projector { id: guess.id, emitter_m: [x_m, y_m, z_m], image },
-            rms_m: (misses_m().map(|miss| miss * miss).sum::<f64>() / measured.len() as f64).sqrt(),
-            worst_m: misses_m().fold(0.0, f64::max),
+            rms_m: (misses_m.iter().map(|miss_m| miss_m * miss_m).sum::<f64>() / measured.len() as f64)
+                .sqrt(),
+            worst_m: misses_m[worst],
+            worst,
+            emitter_deviation_m: [deviations_m[0], deviations_m[1], deviation_m],
+            image_deviation_m: deviations_m.rows(3, 4).max(),
         })
     }
 }
@@ -160,24 +260,8 @@ fn check(measured: &[Correspondence]) -> Result<(), FitError> {
     if measured.len() < LEAST {
         return Err(FitError::TooFew { found: measured.len() });
     }
-    if let Some(index) = measured.iter().position(|c| !(c.pixel.is_finite() && c.place_m.is_finite())) {
-        return Err(FitError::NotFinite(index));
+    match measured.iter().position(|c| !(c.pixel.is_finite() && c.place_m.is_finite())) {
+        Some(index) => Err(FitError::NotFinite(index)),
+        None => Ok(()),
     }
-    let spread = |of: fn(&Correspondence) -> f64| {
-        let (low, high) = measured
-            .iter()
-            .map(of)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        high - low
-    };
-    if spread(|c| c.place_m.z) < LEAST_DEPTH_M {
-        return Err(FitError::Degenerate("emitter is", "in z"));
-    }
-    if spread(|c| c.pixel.x) < LEAST_PX {
-        return Err(FitError::Degenerate("image's left and right edges are", "in their pixels' columns"));
-    }
-    if spread(|c| c.pixel.y) < LEAST_PX {
-        return Err(FitError::Degenerate("image's top and bottom edges are", "in their pixels' rows"));
-    }
-    Ok(())
 }
