@@ -63,7 +63,8 @@ fn direct_view(text: &str, column: u32, row: u32, channel: usize, views: u32) ->
         x += offset("X") / width;
         y += offset("Y") / height;
     } else {
-        x += stripe as f64 / (3.0 * width);
+        let sign = if number("flipImageX") >= 0.5 { -1.0 } else { 1.0 };
+        x += sign * stripe as f64 / (3.0 * width);
     }
     let phase = (x + y * tilt) * pitch - number("center");
     let share = 1.0 - (phase - phase.floor());
@@ -105,6 +106,50 @@ fn each_sub_pixel_is_that_of_the_direct_computation() {
         }
         assert!(seen.iter().all(|&seen| seen), "every view is shown somewhere");
     }
+}
+
+/// The calibration in which a flag is set.
+fn flipped(name: &str) -> Lenticular {
+    let (unset, set) = (format!("\"{name}\":{{\"value\":0.0}}"), format!("\"{name}\":{{\"value\":1.0}}"));
+    assert!(STRIPES.contains(&unset), "{name}");
+    Lenticular::from_visual_json(&STRIPES.replace(&unset, &set)).unwrap()
+}
+
+#[test]
+fn a_panel_that_exchanges_left_and_right_has_the_mirror_image_of_each_lens() {
+    let (straight, mirrored) = (Lenticular::from_visual_json(STRIPES).unwrap(), flipped("flipImageX"));
+    let both = 2.0 * straight.center - straight.lenses_across();
+    for (column, row) in [(0, 0), (17, 3), (95, 59)] {
+        for channel in 0..3 {
+            // From a mirrored place as many lenses are left to the right edge as there are from the left edge to the place.
+            let sum = straight.share(95 - column, row, channel) + mirrored.share(column, row, channel);
+            let apart = sum - both;
+            assert!((apart - apart.round()).abs() < 1e-9, "{column} {row} {channel}: {apart}");
+        }
+    }
+}
+
+#[test]
+fn what_is_just_between_two_lenses_shows_the_last_view() {
+    let lenses = Lenticular::from_visual_json(STRIPES).unwrap();
+    let (x, y) = ((7.0 + 0.5) / 96.0, (60.0 - 1.0 - 11.0 + 0.5) / 60.0);
+    let center = (x + y * lenses.tilt()) * lenses.lenses_across();
+    let centred = Lenticular { center, ..lenses };
+    assert_eq!((centred.share(7, 11, 0), centred.view(7, 11, 0, 48)), (1.0, 47));
+    let to_the_right = Lenticular { views_run_left: false, ..centred };
+    assert_eq!((to_the_right.share(7, 11, 0), to_the_right.view(7, 11, 0, 48)), (0.0, 0));
+}
+
+#[test]
+fn other_ways_to_write_a_calibration_are_read() {
+    let cells = Lenticular::from_visual_json(CELLS).unwrap();
+    let lower = CELLS.replace("CellPatternMode", "cellPatternMode");
+    assert_eq!(Lenticular::from_visual_json(&lower).unwrap(), cells);
+    let without = STRIPES.replacen('{', "{\"subpixelCells\":null,", 1);
+    assert_eq!(
+        Lenticular::from_visual_json(&without).unwrap(),
+        Lenticular::from_visual_json(STRIPES).unwrap()
+    );
 }
 
 proptest! {

@@ -142,7 +142,8 @@ impl Lenticular {
         if self.flips_x { -tilt } else { tilt }
     }
 
-    /// Where under its lens the sub-pixel of a channel is, as a share of the view cone from the left: in [0, 1).
+    /// Where under its lens the sub-pixel of a channel is, as a share of the view cone from the left: in (0, 1] if views run to the left,
+    /// else in [0, 1).
     pub fn share(&self, column: u32, row: u32, channel: usize) -> f64 {
         let [width, height] = self.panel_px;
         let (columns, rows) = (f64::from(width), f64::from(height));
@@ -152,8 +153,7 @@ impl Lenticular {
         let y = (f64::from(row_from_bottom) + 0.5 + up_px) / rows;
         let lens = (x + y * self.tilt()) * self.lenses_across() - self.center;
         let across = lens - lens.floor();
-        let share = if self.views_run_left { 1.0 - across } else { across };
-        if share < 1.0 { share } else { 0.0 }
+        if self.views_run_left { 1.0 - across } else { across }
     }
 
     /// Which of so many views a sub-pixel shows.
@@ -174,11 +174,14 @@ impl Lenticular {
         rows.flat_map_iter(|row| (0..width).map(move |column| of_pixel(column, row))).collect()
     }
 
-    /// From the middle of a pixel; without cells, from where the maker's software takes its red stripe to be.
+    /// From the middle of a pixel; without cells, from where the maker's software takes its red stripe to be. On a panel that exchanges left
+    /// and right stripes go to the left, as in the maker's Unity plugin (`subpixelSize`) and in 0.6.0 of its `webxr` (`subp`), and not yet in
+    /// its older `holoplay-core`.
     fn offset_px(&self, column: u32, row_from_bottom: u32, channel: usize) -> [f64; 2] {
         let channel = if self.flips_subpixels { 2 - channel } else { channel };
         if self.cells.is_empty() {
-            return [channel as f64 / 3.0, 0.0];
+            let right_px = channel as f64 / 3.0;
+            return [if self.flips_x { -right_px } else { right_px }, 0.0];
         }
         let cell = self.cell_pattern.cell(column, row_from_bottom);
         self.cells[cell % self.cells.len()].offsets_px[channel]

@@ -8,8 +8,8 @@ const USUAL_CONE_DEG: f64 = 40.0;
 
 impl Lenticular {
     /// Reads a `visual.json`: numbers as such or as `{"value": …}`. `pitch`, `slope`, `center`, `DPI`, `screenW` and `screenH` are
-    /// needed; `viewCone`, `invView`, `flipImageX`, `flipImageY`, `flipSubp`, `CellPatternMode` and `subpixelCells` have defaults;
-    /// whatever else is in it is for others.
+    /// needed; `viewCone`, `invView`, `flipImageX`, `flipImageY`, `flipSubp`, `CellPatternMode` (or `cellPatternMode`) and
+    /// `subpixelCells` have defaults; whatever else is in it is for others.
     ///
     /// # Errors
     /// What is no JSON, lacks a number that is needed, has something else in its place, or as of [`Lenticular::checked`].
@@ -30,7 +30,7 @@ impl Lenticular {
             flips_x: is_set("flipImageX", 0.0)?,
             flips_y: is_set("flipImageY", 0.0)?,
             flips_subpixels: is_set("flipSubp", 0.0)?,
-            cell_pattern: cell_pattern(or("CellPatternMode", 0.0)?)?,
+            cell_pattern: cell_pattern(or("CellPatternMode", or("cellPatternMode", 0.0)?)?)?,
             cells: cells(&file)?,
         }
         .checked()
@@ -64,9 +64,12 @@ fn cell_pattern(mode: f64) -> Result<CellPattern, DisplayError> {
 }
 
 fn cells(file: &Value) -> Result<Vec<SubpixelCell>, DisplayError> {
-    let Some(list) = file.get("subpixelCells") else { return Ok(Vec::new()) };
-    let Some(list) = list.as_array() else {
-        return Err(DisplayError::NotAList { field: "subpixelCells", found: list.to_string() });
+    let list = match file.get("subpixelCells") {
+        None | Some(Value::Null) => return Ok(Vec::new()),
+        Some(Value::Array(list)) => list,
+        Some(other) => {
+            return Err(DisplayError::NotAList { field: "subpixelCells", found: other.to_string() });
+        }
     };
     let cell = |cell: &Value| {
         let offset = |name: &'static str| number(cell, name)?.ok_or(DisplayError::Missing { field: name });

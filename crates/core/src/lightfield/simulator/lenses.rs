@@ -52,7 +52,8 @@ impl QuiltDisplay {
 }
 
 impl Lenticular {
-    /// What an eye sees of an interlaced picture: of the sub-pixels under a lens those that the lens magnifies towards it.
+    /// What an eye sees of an interlaced picture: of the sub-pixels under a lens those that the lens magnifies towards it, where the panel
+    /// shows them.
     ///
     /// # Errors
     /// A picture of another size than the panel's.
@@ -78,9 +79,11 @@ impl Lenticular {
         Ok(eye.picture(|column, row| {
             let screen_m = eye.screen_m(screen_size_m, column, row);
             let wanted = display.share_towards(eye, screen_m.x);
+            let right = screen_m.x / screen_size_m[0] + 0.5;
+            let down = 0.5 - screen_m.y / screen_size_m[1];
             let at = DVec2::new(
-                (screen_m.x / screen_size_m[0] + 0.5) * columns,
-                (0.5 - screen_m.y / screen_size_m[1]) * rows,
+                if self.flips_x { 1.0 - right } else { right } * columns,
+                if self.flips_y { 1.0 - down } else { down } * rows,
             );
             let mut blend = Blend::default();
             let (middle_column, middle_row) = (at.x.floor() as i64, at.y.floor() as i64);
