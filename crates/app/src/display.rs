@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::spec;
 use crate::text_file::read_text_file;
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 use wheatstone_core::lightfield::quilt::Model;
 use wheatstone_core::lightfield::{DisplayError, Lenticular, ProjectorArray, QuiltDisplay};
@@ -170,11 +170,13 @@ impl Display {
 
 /// Either kind of description.
 pub(crate) fn from_json(text: &str) -> Result<Display, DisplayError> {
-    let is_array = serde_json::from_str::<Value>(text)?.get("wheatstone_projector_array").is_some();
-    if is_array {
+    let fields: Map<String, Value> = serde_json::from_str(text)?;
+    if fields.contains_key("wheatstone_projector_array") {
         ProjectorArray::from_json(text).map(Display::Projectors)
-    } else {
+    } else if fields.contains_key("columns") {
         QuiltDisplay::from_json(text).map(Display::Lenses)
+    } else {
+        Err(DisplayError::UnknownKind)
     }
 }
 

@@ -197,6 +197,10 @@ fn measured_displays_are_described_as_they_are() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert_eq!(run.json()["fitted"][0]["id"], 104);
     assert!(run.json()["worst_m"].as_f64().unwrap() < 1e-8);
+    let fitted = &run.json()["fitted"][0];
+    assert!(fitted["worst_correspondence"].is_u64(), "{fitted}");
+    assert!(fitted["emitter_deviation_m"][2].as_f64().unwrap() < 1e-6, "{fitted}");
+    assert!(fitted["image_deviation_m"].as_f64().unwrap() < 1e-6, "{fitted}");
     let fitted: Value =
         serde_json::from_str(&std::fs::read_to_string(bench.path("fitted.json")).unwrap()).unwrap();
     for (axis, expected) in emitter.into_iter().enumerate() {
@@ -234,6 +238,16 @@ fn what_no_projectors_can_show_is_refused_with_nothing_written() {
     let lenses = bench.run(&["projectors", "o.nrrd", "-o", "x.png", "--display", "go"]);
     assert!(lenses.code == 2 && lenses.stderr.contains("go is behind lenses"), "{}", lenses.stderr);
     assert_eq!(bench.files(), before);
+
+    let misspelt = array().to_string().replace("wheatstone_projector_array", "wheatstone_projectors_array");
+    for (text, says) in [
+        (misspelt.as_str(), "display.json: neither wheatstone_projector_array is in it"),
+        ("[8, 6, [336, 336], 0.75, 40, 0.654, 0.16]", "display.json: invalid type: sequence, expected a map"),
+    ] {
+        std::fs::write(bench.path("display.json"), text).unwrap();
+        let run = bench.run(&["projectors", "o.nrrd", "-o", "x.png", "--display", "display.json"]);
+        assert!(run.code == 2 && run.stderr.contains(says), "{}", run.stderr);
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Why a description is no display.
 
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 use thiserror::Error;
 
 /// What is wrong with the description of a display.
@@ -89,6 +91,22 @@ pub enum DisplayError {
         /// Width and height of an image, pixels.
         image: [u32; 2],
     },
+    /// A header that cannot tell whose all the images of a frame are.
+    #[error(
+        "packing.frame_size_px[0] is {columns}: must be at least {places}, a column of the header for each image that a frame has room for"
+    )]
+    HeaderTooNarrow {
+        /// Width of a frame, pixels.
+        columns: u32,
+        /// Images that a frame has room for.
+        places: u64,
+    },
+    /// A description of neither kind of display.
+    #[error(
+        "neither wheatstone_projector_array is in it, as in the description of a display of projectors, nor columns, as in that of a display \
+        behind lenses"
+    )]
+    UnknownKind,
     /// More pixels than are handled.
     #[error("{field}: {count} in all, must be at most {most}")]
     TooManyPixels {
@@ -107,6 +125,12 @@ impl From<serde_json::Error> for DisplayError {
         let reason = text.split(" at line ").next().unwrap_or(&text).to_owned();
         Self::Syntax { reason, line: error.line(), column: error.column() }
     }
+}
+
+/// What the object of a text in JSON tells. Lists of the values alone are refused.
+pub(super) fn from_object<T: DeserializeOwned>(text: &str) -> Result<T, DisplayError> {
+    serde_json::from_str::<Map<String, Value>>(text)?;
+    Ok(serde_json::from_str(text)?)
 }
 
 /// A number that keeps a rule.

@@ -1,7 +1,7 @@
 //! Descriptions of projector arrays are read back as written, and each fault gives one clear error.
 
 use crate::scene::display;
-use wheatstone_core::lightfield::ProjectorArray;
+use wheatstone_core::lightfield::{ProjectorArray, QuiltDisplay};
 
 /// The written form of a display with a part replaced.
 fn with(part: &str, replacement: &str) -> String {
@@ -82,6 +82,18 @@ fn each_fault_is_named_with_what_was_expected() {
         (
             number("\"header_rows\": 8", "\"header_rows\": 0"),
             "packing.frame_size_px is 64x44 with 0 header rows",
+        ),
+        (
+            number("    16,\n    12\n", "    1,\n    1\n"),
+            "packing.frame_size_px[0] is 64: must be at least 2304, a column of the header for each image",
+        ),
+        (
+            fault("[1, [0.2, 0.15], 0.01, 2.0, [0.0, 0.6], [16, 12], [], [[64, 44], 8]]"),
+            "invalid type: sequence, expected a map",
+        ),
+        (
+            QuiltDisplay::from_json("[8, 6, [336, 336], 0.75, 40, 0.654, 0.16]").unwrap_err().to_string(),
+            "invalid type: sequence, expected a map",
         ),
         (number("    12\n", "    0\n"), "image_size_px[1] is 0: must be from 1 to 32768 pixels"),
         (

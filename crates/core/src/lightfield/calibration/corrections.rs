@@ -70,7 +70,7 @@ impl Corrections {
     /// What is no JSON, lacks a field or has an unknown one, is of another version, has ids that the display does not have or that
     /// repeat, or warps or tables that are none.
     pub fn from_json(text: &str, display: &ProjectorArray) -> Result<Self, CorrectionError> {
-        let corrections: Self = serde_json::from_str(text).map_err(DisplayError::from)?;
+        let corrections: Self = error::from_object(text)?;
         error::check_version(corrections.wheatstone_corrections, VERSION)?;
         for (index, correction) in corrections.projectors.iter().enumerate() {
             correction.check(index)?;

@@ -76,7 +76,7 @@ impl Measurements {
     /// # Errors
     /// What is no JSON, lacks a field or has an unknown one, or is of another version.
     pub fn from_json(text: &str) -> Result<Self, DisplayError> {
-        let measurements: Self = serde_json::from_str(text)?;
+        let measurements: Self = error::from_object(text)?;
         error::check_version(measurements.wheatstone_measurements, VERSION)?;
         Ok(measurements)
     }

@@ -1,6 +1,6 @@
 //! What is written of a display of projectors.
 
-use super::super::error::{check, check_length_m, check_pixels, check_size_px, check_version};
+use super::super::error::{check, check_length_m, check_pixels, check_size_px, check_version, from_object};
 use super::{DisplayError, Packing, Projector, VirtualViewer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ const MOST_PROJECTORS: usize = 4096;
 
 impl Description {
     pub(super) fn parse(text: &str) -> Result<Self, DisplayError> {
-        Ok(serde_json::from_str(text)?)
+        from_object(text)
     }
 
     pub(super) fn to_json(&self) -> String {

@@ -56,17 +56,17 @@ pub enum PackingError {
 /// In a header, of a place without an image.
 const FREE: u32 = LAST_ID + 1;
 
-/// Least width of a field of the header, pixels.
-const FIELD_PX: u32 = 1;
-
 impl Packing {
     pub(super) fn check(&self, image: [u32; 2]) -> Result<(), DisplayError> {
         check_size_px("packing.frame_size_px", self.frame_size_px)?;
         let places = self.columns_and_rows(image).map(u64::from);
-        let fields_fit = places[0] * places[1] * u64::from(FIELD_PX) <= u64::from(self.frame_size_px[0]);
-        if self.header_rows == 0 || places.contains(&0) || !fields_fit {
-            let Self { frame_size_px: frame, header_rows } = *self;
+        let Self { frame_size_px: frame, header_rows } = *self;
+        if header_rows == 0 || places.contains(&0) {
             return Err(DisplayError::FrameTooSmall { frame, header_rows, image });
+        }
+        let (columns, places) = (frame[0], places[0] * places[1]);
+        if places > u64::from(columns) {
+            return Err(DisplayError::HeaderTooNarrow { columns, places });
         }
         Ok(())
     }

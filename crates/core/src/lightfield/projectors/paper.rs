@@ -28,12 +28,16 @@ impl ProjectorArray {
         let image = ImageRect { left_m: -0.2, right_m: 0.2, down_m: -0.15, up_m: 0.15 };
         let projector = |id: u32| {
             let x_m = (f64::from(id) - 0.5 * f64::from(COUNT - 1)) * pitch_m;
-            let straight = Projector { id, emitter_m: [x_m, 0.0, -BEHIND_M], image };
             if x_m.abs() < mirror_m {
-                return straight;
+                return Projector { id, emitter_m: [x_m, 0.0, -BEHIND_M], image };
             }
-            let reversed = ImageRect { left_m: image.right_m, right_m: image.left_m, ..image };
-            Projector { id, emitter_m: [x_m, RAISED_M, -BEHIND_M], image: reversed }
+            // It throws its image to where the mirror shows the screen.
+            let mirror_m = mirror_m.copysign(x_m);
+            let in_mirror = |x_m: f64| 2.0 * mirror_m - x_m;
+            let thrown =
+                ImageRect { left_m: in_mirror(image.right_m), right_m: in_mirror(image.left_m), ..image };
+            let standing = Projector { id, emitter_m: [in_mirror(x_m), RAISED_M, -BEHIND_M], image: thrown };
+            standing.reflected(mirror_m, id)
         };
         Self {
             description: Description {

@@ -11,7 +11,7 @@ pub use name::{NotAQuiltName, QuiltName};
 pub use tiles::TileError;
 
 use super::DisplayError;
-use super::error::{check, check_length_m, check_size_px};
+use super::error::{check, check_length_m, check_size_px, from_object};
 use crate::view::{Frustum, Projection, View};
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -99,7 +99,7 @@ impl QuiltDisplay {
     /// # Errors
     /// What is no JSON, lacks a field or has an unknown one, or as of [`QuiltDisplay::checked`].
     pub fn from_json(text: &str) -> Result<Self, DisplayError> {
-        serde_json::from_str::<Self>(text)?.checked()
+        from_object::<Self>(text)?.checked()
     }
 
     /// Views of a quilt.
