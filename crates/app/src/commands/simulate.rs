@@ -158,7 +158,10 @@ impl Shown {
         for path in paths {
             let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
             for (projector, image) in array.unpack(&read_png(path)?).map_err(|error| bad(&error))? {
-                images[projector] = Some(image);
+                if images[projector].replace(image).is_some() {
+                    let id = array.projectors()[projector].id;
+                    return Err(bad(&format_args!("it has the image of projector {id}, which came before")));
+                }
             }
         }
         let missing = images.iter().position(Option::is_none).map(|index| array.projectors()[index].id);

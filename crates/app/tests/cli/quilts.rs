@@ -312,6 +312,11 @@ fn an_eye_sees_the_projector_whose_beam_meets_it() {
     }
     let one = bench.run(&["simulate", "frame_0.png", "-o", "x.png", "--display", "array.json"]);
     assert!(one.code == 2 && one.stderr.contains("the image of projector 2"), "{}", one.stderr);
+    let twice =
+        ["simulate", "frame_0.png", "frame_1.png", "frame_0.png", "-o", "x.png", "--display", "array.json"];
+    let twice = bench.run(&twice);
+    let says = "frame_0.png: it has the image of projector 0, which came before";
+    assert!(twice.code == 2 && twice.stderr.contains(says), "{}", twice.stderr);
 }
 
 #[test]
