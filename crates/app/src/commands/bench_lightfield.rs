@@ -23,7 +23,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use views::Measurement;
 use wheatstone_core::cast::CastParameters;
-use wheatstone_core::lightfield::projectors::Description;
+use wheatstone_core::lightfield::projectors::{Description, Packing};
 use wheatstone_core::lightfield::quilt::Model;
 use wheatstone_core::lightfield::{ProjectorArray, QuiltDisplay};
 use wheatstone_core::scene::{Settings, Shading};
@@ -135,9 +135,13 @@ impl LightfieldArgs {
     fn projectors(&self) -> Result<ProjectorArray, Failure> {
         let full = ProjectorArray::of_paper();
         let description = full.description();
+        let [width, height] = description.image_size_px.map(|side| (side / self.projector_scale).max(1));
+        let header_rows = 1;
         ProjectorArray::new(Description {
             pixel_size_m: description.pixel_size_m * f64::from(self.projector_scale),
-            image_size_px: description.image_size_px.map(|side| (side / self.projector_scale).max(1)),
+            image_size_px: [width, height],
+            // Nothing is packed: a frame for each.
+            packing: Packing { frame_size_px: [width, height + header_rows], header_rows },
             ..description.clone()
         })
         .map_err(Failure::input)

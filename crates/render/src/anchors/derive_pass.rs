@@ -80,9 +80,10 @@ impl DerivePass {
         });
         let bytes = 8 * squares.map(u64::from).iter().product::<u64>();
         let kept = self.listed.take().filter(|listed| listed.size() >= bytes);
-        let listed = self.listed.insert(kept.unwrap_or_else(|| {
-            storage(&gpu.device, "slabs of squares", bytes, wgpu::BufferUsages::empty())
-        }));
+        let listed =
+            self.listed.insert(kept.unwrap_or_else(|| {
+                storage(&gpu.device, "slabs of squares", bytes, wgpu::BufferUsages::empty())
+            }));
         let color = target.color.create_view(&wgpu::TextureViewDescriptor::default());
         let color = wgpu::BindingResource::TextureView(&color);
         let [shear, listed] = [&uniform, listed].map(wgpu::Buffer::as_entire_binding);

@@ -98,8 +98,7 @@ fn they_are_those_of_the_twin_and_near_their_casts() {
 /// Compares cells: samples near the bounds of slabs may be in either.
 fn check_slabs(found: &SlabPicture, twin: &SlabPicture) {
     assert_eq!((found.size, found.count), (twin.size, twin.count));
-    let is_off =
-        |&(&a, &b): &(&u32, &u32)| (color_of(a) - color_of(b)).abs().max_element() > 3.0 / 255.0;
+    let is_off = |&(&a, &b): &(&u32, &u32)| (color_of(a) - color_of(b)).abs().max_element() > 3.0 / 255.0;
     let filled = twin.cells.iter().filter(|&&cell| cell != 0).count();
     let off = found.cells.iter().zip(&twin.cells).filter(is_off).count();
     // The first anchor has 3951, of few slabs with little in them.

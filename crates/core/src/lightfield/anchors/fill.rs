@@ -33,7 +33,8 @@ pub fn fill(plan: &AnchorPlan, pictures: &[SlabPicture]) -> Vec<SlabPicture> {
         for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
             let Some(hider) = picture.hider(column.into(), row) else { continue };
             for slab in hider.slab() + 1..picture.count {
-                let cell = (slab as usize * height as usize + row as usize) * width as usize + column as usize;
+                let cell =
+                    (slab as usize * height as usize + row as usize) * width as usize + column as usize;
                 let at = [slab, column, row];
                 filled.cells[cell] = match seen_from(&places, at, hider) {
                     Seen::Known(color) => cell_of(color),
@@ -58,8 +59,7 @@ impl Place<'_> {
             column as f32 + self.source.offset_px as f32 + slab as f32 * self.source.per_slab_px as f32;
         let columns = [0, 1].map(|right| position.floor() as i64 + right);
         let cells = columns.map(|column| color_of(self.anchor.cell(slab, column, row)));
-        let hiders =
-            columns.map(|column| self.anchor.hider(column, row).filter(|hider| hider.hides(slab)));
+        let hiders = columns.map(|column| self.anchor.hider(column, row).filter(|hider| hider.hides(slab)));
         match hiders {
             [Some(left), Some(right)] => Seen::Behind(left.max(right)),
             // Between what is hidden and what is not, there is what is not: what hides the one has been there before.

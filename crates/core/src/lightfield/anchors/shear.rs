@@ -36,8 +36,7 @@ fn gather(derived: &Derived, anchor: &SlabPicture, column: u32, row: u32) -> Vec
         // Whole numbers are middles of pixels.
         let position = column as f32 + source.offset_px as f32 + slab as f32 * source.per_slab_px as f32;
         let left = position.floor();
-        let [at_left, at_right] =
-            [0, 1].map(|right| color_of(anchor.cell(slab, left as i64 + right, row)));
+        let [at_left, at_right] = [0, 1].map(|right| color_of(anchor.cell(slab, left as i64 + right, row)));
         color += (1.0 - color.w) * at_left.lerp(at_right, position - left);
     }
     color
