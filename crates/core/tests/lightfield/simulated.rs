@@ -9,10 +9,11 @@ use wheatstone_core::lightfield::simulator::Eye;
 use wheatstone_core::lightfield::{
     Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_PIXELS, coarsest_alike,
 };
+use wheatstone_core::lit_sphere::Style;
 use wheatstone_core::metrics::{SizeMismatch, compare};
 use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Aids, Cast, Caster};
-use wheatstone_core::scene::Settings;
+use wheatstone_core::scene::{Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::Volume;
@@ -314,5 +315,39 @@ fn through_real_lenses_much_the_same_is_seen() {
                 "{x_m} m to the right of {lenses:?}: {dssim}, from elsewhere {from_elsewhere}"
             );
         }
+    }
+}
+
+#[test]
+fn highlights_and_what_is_clear_go_with_the_eye() {
+    let display = QuiltDisplay {
+        columns: 5,
+        rows: 1,
+        quilt_size_px: [5 * SIZE[0], SIZE[1]],
+        aspect: 4.0 / 3.0,
+        view_cone_deg: 40.0,
+        focal_distance_m: 0.6,
+        screen_height_m: 0.15,
+    };
+    let views = display.views(Sampling::Middles, DAffine3::IDENTITY);
+    let volume = Phantom::SheppLogan.cube(48).unwrap();
+    let styles = [Style::Metal, Style::Glass].map(|style| Shading::LitSphere { low: style, high: style });
+    for shading in [Shading::Phong].into_iter().chain(styles) {
+        let scene = Scene::new(&volume, 0.12, &Settings { shading, ..Settings::new(byte_window(), soft()) });
+        let pictures = cast(&scene, &views);
+        let eye_m = views[0].view_from_world.inverse().translation;
+        let eye = Eye::new(eye_m, SIZE).unwrap();
+        let seen = display.seen_from(&eye, &pictures).unwrap();
+        let truth = eye.view(display.screen_size_m(), DAffine3::IDENTITY);
+        let shaded_from = Some(views[2].viewpoint());
+        let [truth, from_middle] =
+            [truth, View { shaded_from, ..truth }].map(|view| cast(&scene, &[view]).remove(0));
+        let dssim = |other: &RgbImage| compare(&seen, other).unwrap().dssim();
+        assert!(
+            dssim(&truth) < 1e-5 && dssim(&from_middle) > 1e-3,
+            "{shading:?}: {} {}",
+            dssim(&truth),
+            dssim(&from_middle)
+        );
     }
 }

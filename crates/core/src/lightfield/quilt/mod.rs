@@ -128,15 +128,12 @@ impl QuiltDisplay {
         0.5 + (x_m / self.focal_distance_m).atan() / self.view_cone_deg.to_radians()
     }
 
-    /// The views of a world in which the display stands, in order. All are shaded from the middle of the cameras.
+    /// The views of a world in which the display stands, in order. Each is shaded from its own camera: highlights and what else depends
+    /// on the eye go with it (LF §6).
     pub fn views(&self, sampling: Sampling, display_from_world: DAffine3) -> Vec<View> {
         let count = self.view_count();
-        let middle = self.view_from(0.0, display_from_world);
-        let shaded_from = Some(middle.viewpoint());
         let camera = |index| self.camera_x_m(sampling.share(index, count));
-        (0..count)
-            .map(|index| View { shaded_from, ..self.view_from(camera(index), display_from_world) })
-            .collect()
+        (0..count).map(|index| self.view_from(camera(index), display_from_world)).collect()
     }
 
     /// The view of a camera so far to the right of the middle: an off-axis frustum through the screen.
