@@ -1,12 +1,13 @@
 //! Which light-field display.
 
 use crate::failure::Failure;
+use crate::quilt_file::{check_name, is_named};
 use crate::spec;
 use crate::text_file::read_text_file;
 use clap::Args;
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use wheatstone_core::lightfield::quilt::Model;
+use wheatstone_core::lightfield::quilt::{Model, QuiltName};
 use wheatstone_core::lightfield::{DisplayError, Lenticular, ProjectorArray, QuiltDisplay};
 
 /// Flags that describe a display.
@@ -14,9 +15,9 @@ use wheatstone_core::lightfield::{DisplayError, Lenticular, ProjectorArray, Quil
 #[command(next_help_heading = "Display")]
 pub(crate) struct DisplayArgs {
     /// portrait, go, 16, 32, 65, 16-landscape, 16-portrait, 32-landscape, 32-portrait (by Looking Glass), agus-2008
-    /// (projectors) or a description; what follows replaces its numbers.
-    #[arg(long, value_name = "NAME|FILE.json", default_value = "portrait")]
-    display: String,
+    /// (projectors) or a description; what follows replaces its numbers [default: portrait].
+    #[arg(long, value_name = "NAME|FILE.json")]
+    display: Option<String>,
 
     /// Views beside each other in a quilt.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), allow_negative_numbers = true)]
@@ -77,16 +78,36 @@ const ASPECT_TOLERANCE: f64 = 0.02;
 impl DisplayArgs {
     /// The display. Behind lenses whose calibration is known, the view cone is theirs.
     pub(crate) fn resolve(&self, lenses: Option<&Lenticular>) -> Result<Display, Failure> {
-        match named(&self.display)? {
+        let name = self.display.as_deref().unwrap_or(Model::Portrait.name());
+        match named(name)? {
             Display::Lenses(display) => self.changed(display, lenses).map(Display::Lenses),
             Display::Projectors(_) if self.changes_something() || lenses.is_some() => {
                 Err(Failure::input(format!(
-                    "{} has projectors: columns, rows, sizes and calibrations are those of displays behind lenses",
-                    self.display
+                    "{name} has projectors: columns, rows, sizes and calibrations are those of displays behind lenses"
                 )))
             }
             projectors @ Display::Projectors(_) => Ok(projectors),
         }
+    }
+
+    /// The display behind lenses that a quilt is for, given what flags alone make of it: the name of its file tells columns, rows and
+    /// aspect, and its size is that of the display's quilts, but for what flags say. A name that tells nothing leaves the display as it is.
+    pub(crate) fn of_quilt(
+        &self,
+        display: QuiltDisplay,
+        name: &str,
+        quilt_size_px: [u32; 2],
+    ) -> Result<QuiltDisplay, Failure> {
+        let Ok(named) = name.parse::<QuiltName>() else { return Ok(display) };
+        let base = if self.display.is_some() { display } else { laid_out_as(&named) };
+        let display = self.changed(QuiltDisplay { quilt_size_px, ..base }, None)?;
+        check_name(name, &display)?;
+        Ok(display)
+    }
+
+    /// The description, if it is a file.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.display.as_deref().filter(|name| is_file(name)).map(Path::new)
     }
 
     fn changes_something(&self) -> bool {
@@ -123,6 +144,18 @@ impl ArrayArgs {
             ))),
         }
     }
+
+    /// The description, if it is a file.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        is_file(&self.display).then(|| Path::new(&self.display))
+    }
+}
+
+/// The first known display whose quilts are laid out as a name tells, or the portrait with such quilts.
+fn laid_out_as(named: &QuiltName) -> QuiltDisplay {
+    let known = Model::ALL.iter().map(|model| model.display()).find(|display| is_named(named, display));
+    let QuiltName { columns, rows, aspect, .. } = *named;
+    known.unwrap_or(QuiltDisplay { columns, rows, aspect, ..Model::Portrait.display() })
 }
 
 /// The names of known displays.
@@ -130,14 +163,18 @@ pub(crate) fn known_names() -> impl Iterator<Item = &'static str> {
     Model::ALL.iter().map(|model| model.name()).chain([OF_PAPER])
 }
 
+/// Whether the name of a display is that of a file.
+pub(crate) fn is_file(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
 /// A known display, or that of a file.
 pub(crate) fn named(name: &str) -> Result<Display, Failure> {
     if name == OF_PAPER {
         return Ok(Display::Projectors(ProjectorArray::of_paper()));
     }
-    let path = Path::new(name);
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-        return read_text_file(path, MOST_BYTES, "a description of a display", from_json);
+    if is_file(name) {
+        return read_text_file(Path::new(name), MOST_BYTES, "a description of a display", from_json);
     }
     let model = name.parse::<Model>().map_err(|error| {
         Failure::input(format!("--display: {error}, {OF_PAPER}; descriptions end in .json"))

@@ -6,6 +6,7 @@ use crate::transfer_spec::{self, Resolved, TransferSpec};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use wheatstone_core::scene::{BoundaryEnhancement, Clip, ClipPlane, GradientMethod, Mode, Settings, Shading};
 use wheatstone_core::volume::{StorageKind, Volume, Window};
 
@@ -92,14 +93,7 @@ impl ModeName {
 
     /// Name as on the command line.
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Dvr => "dvr",
-            Self::Mip => "mip",
-            Self::Minip => "minip",
-            Self::Mean => "mean",
-            Self::Xray => "xray",
-            Self::Iso => "iso",
-        }
+        self.with_isovalue(0.0).name()
     }
 
     /// Whether samples are lit in this mode.
@@ -191,6 +185,14 @@ impl LookArgs {
             return Err(Failure::input(format!("--boundaries needs --mode dvr, not --mode {}", mode.name())));
         }
         Ok(())
+    }
+
+    /// The file of the transfer function, if it comes from one.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        match &self.tf {
+            Some(TransferSpec::File(path)) => Some(path),
+            _ => None,
+        }
     }
 
     /// The mode, given or implied.

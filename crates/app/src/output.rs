@@ -36,6 +36,24 @@ pub(crate) fn check_writable(path: &Path, extension: &str) -> Result<(), Failure
     check_folder(folder_of(path))
 }
 
+/// Refuses outputs in the place of files that are read, by whatever paths these are named.
+pub(crate) fn check_apart<'p>(
+    outputs: impl IntoIterator<Item = impl AsRef<Path>>,
+    inputs: impl IntoIterator<Item = &'p Path>,
+) -> Result<(), Failure> {
+    let read: Vec<PathBuf> = inputs.into_iter().filter_map(|input| input.canonicalize().ok()).collect();
+    for output in outputs {
+        let output = output.as_ref();
+        if output.canonicalize().is_ok_and(|written| read.contains(&written)) {
+            return Err(Failure::input(format!(
+                "{}: this file is read and would be replaced: the output must have another name",
+                output.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Makes a folder if it is missing, and refuses one that no file can be made in.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| {
@@ -53,7 +71,10 @@ pub(crate) fn file_in(folder: &Path, name: &str) -> PathBuf {
 fn check_folder(folder: &Path) -> Result<(), Failure> {
     let probe = tempfile::Builder::new().prefix(".wheatstone-").suffix(".part").tempfile_in(folder);
     probe.map(drop).map_err(|error| {
-        Failure::input(format!("{}: cannot create a file here ({})", folder.display(), error.kind()))
+        Failure::input(match error.kind() {
+            ErrorKind::NotFound => format!("{}: no such folder", folder.display()),
+            other => format!("{}: cannot create a file here ({other})", folder.display()),
+        })
     })
 }
 
@@ -88,5 +109,20 @@ mod tests {
     fn frames_are_numbered_before_the_extension() {
         assert_eq!(numbered(Path::new("a/b.c.png"), 7), Path::new("a/b.c_0007.png"));
         assert_eq!(numbered(Path::new("x.png"), 12345), Path::new("x_12345.png"));
+    }
+
+    #[test]
+    fn outputs_are_other_files_than_inputs_whatever_they_are_called() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::write(path("a.png"), []).unwrap();
+        std::fs::create_dir(path("sub")).unwrap();
+        let apart = |output: &str| check_apart([path("new.png"), path(output)], [path("a.png").as_path()]);
+        for same in ["a.png", "./a.png", "sub/../a.png"] {
+            let error = apart(same).unwrap_err().to_string();
+            assert!(error.contains(same) && !error.contains("new.png"), "{error}");
+        }
+        assert!(apart("b.png").is_ok() && apart("sub/a.png").is_ok());
+        assert!(check_apart([path("b.png")], [path("missing.png").as_path()]).is_ok());
     }
 }

@@ -18,7 +18,7 @@ pub(crate) struct QuiltPaths {
     folder: PathBuf,
     /// What precedes the suffix.
     stem: String,
-    /// From `_qs` on.
+    /// From `_qs` to the end, with whatever else follows the layout.
     suffix: String,
 }
 
@@ -56,9 +56,7 @@ impl QuiltPaths {
 /// Refuses the name of another display's quilt; a name that tells nothing is anybody's.
 pub(crate) fn check_name(name: &str, display: &QuiltDisplay) -> Result<(), Failure> {
     let Ok(named) = name.parse::<QuiltName>() else { return Ok(()) };
-    let is_same = (named.columns, named.rows) == (display.columns, display.rows)
-        && (named.aspect / display.aspect - 1.0).abs() <= ASPECT_TOLERANCE;
-    if is_same {
+    if is_named(&named, display) {
         return Ok(());
     }
     Err(Failure::input(format!(
@@ -68,6 +66,12 @@ pub(crate) fn check_name(name: &str, display: &QuiltDisplay) -> Result<(), Failu
         named.aspect,
         QuiltName::of(display, named.stem),
     )))
+}
+
+/// Whether a name is that of a display's quilt.
+pub(crate) fn is_named(named: &QuiltName, display: &QuiltDisplay) -> bool {
+    (named.columns, named.rows) == (display.columns, display.rows)
+        && (named.aspect / display.aspect - 1.0).abs() <= ASPECT_TOLERANCE
 }
 
 /// Exif's mark of plain text.

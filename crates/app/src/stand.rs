@@ -42,6 +42,11 @@ impl StandArgs {
         self.turntable.is_some()
     }
 
+    /// Pictures that are asked for.
+    pub(crate) fn pictures(&self) -> u32 {
+        self.turntable.unwrap_or(1)
+    }
+
     /// Where a volume stands before somebody who is so far from the screen, metres. Its visible corners are in a world in which its longest side
     /// is 1 m; `largest_scale` tells by how much points may be scaled about a place before the screen to be seen in full.
     pub(crate) fn resolve(
@@ -57,7 +62,7 @@ impl StandArgs {
                 "--before-screen must be less than the distance of the {seen_by}, {from_screen_m:.4} m"
             )));
         }
-        let frames = self.turntable.unwrap_or(1);
+        let frames = self.pictures();
         let turned: Vec<DAffine3> =
             (0..frames).map(|frame| aim.orbit(turn_deg(frame, frames), 0.0).view_from_world()).collect();
         let points: Vec<DVec3> =

@@ -25,6 +25,20 @@ pub enum Mode {
     },
 }
 
+impl Mode {
+    /// Its usual short name: `dvr` (direct volume rendering) for composites.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Composite => "dvr",
+            Self::Mip => "mip",
+            Self::MinIp => "minip",
+            Self::Mean => "mean",
+            Self::XRay => "xray",
+            Self::Isosurface { .. } => "iso",
+        }
+    }
+}
+
 /// How a visible sample is lit. Applies to [`Mode::Composite`] and [`Mode::Isosurface`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shading {

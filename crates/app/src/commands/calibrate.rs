@@ -2,7 +2,7 @@
 
 use crate::display::ArrayArgs;
 use crate::failure::Failure;
-use crate::output::{check_writable, print_json};
+use crate::output::{check_apart, check_writable, print_json};
 use crate::text_file::read_text_file;
 use clap::Args;
 use serde_json::json;
@@ -40,6 +40,7 @@ const MOST_BYTES: u64 = 1 << 26;
 /// Runs the command.
 pub(crate) fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     check_writable(&args.output, "json")?;
+    check_apart([&args.output], [args.measurements.as_path()].into_iter().chain(args.display.file()))?;
     let display = args.display.resolve()?;
     let calibrated = read_text_file(&args.measurements, MOST_BYTES, "measurements", |text| {
         Measurements::from_json(text)?.fit(&display)

@@ -5,7 +5,7 @@ use crate::camera::AimArgs;
 use crate::display::ArrayArgs;
 use crate::failure::Failure;
 use crate::look::{Look, LookArgs, ModeName};
-use crate::output::{check_writable, described, numbered, print_json};
+use crate::output::{check_apart, check_writable, described, numbered, print_json};
 use crate::picture::{Bits, write_png};
 use crate::progress::Bar;
 use crate::skipping::{SkipArgs, SkipName, Skipping};
@@ -126,6 +126,7 @@ pub(crate) fn run(args: &ProjectorsArgs) -> Result<(), Failure> {
     args.look.check()?;
     let skipping = args.skip.resolve(SkipName::Auto)?;
     let array = args.display.resolve()?;
+    args.check_apart(&array)?;
     let corrections = args.corrections.as_deref().map(|path| read_corrections(path, &array)).transpose()?;
     let mut loaded = args.volume.load()?;
     let look = args.look.resolve(&loaded.volume)?;
@@ -157,6 +158,23 @@ fn read_corrections(path: &Path, array: &ProjectorArray) -> Result<Corrections, 
 }
 
 impl ProjectorsArgs {
+    fn check_apart(&self, array: &ProjectorArray) -> Result<(), Failure> {
+        let frames = array.batches().len() as u32;
+        let outputs = (0..self.stand.pictures()).flat_map(|turn| (0..frames).map(move |frame| (turn, frame)));
+        let outputs = outputs.map(|(turn, frame)| self.path(turn, frame));
+        let flags = [self.look.file(), self.display.file(), self.corrections.as_deref()];
+        check_apart(outputs, [self.volume.file.as_path()].into_iter().chain(flags.into_iter().flatten()))
+    }
+
+    /// A frame of a picture of the turntable, if there is one.
+    fn path(&self, turn: u32, frame: u32) -> PathBuf {
+        if self.stand.is_turning() {
+            numbered(&numbered(&self.output, turn), frame)
+        } else {
+            numbered(&self.output, frame)
+        }
+    }
+
     fn resolution(&self, look: &Look) -> Result<ResolutionName, Failure> {
         let can_be_matched = look.mode == ModeName::Dvr && !look.settings.transfer.is_2d();
         match self.resolution {
@@ -214,8 +232,6 @@ impl ProjectorsArgs {
         let projectors = stage.array.projectors().len() as u64;
         let bar = Bar::new("images", u64::from(stage.stand.pictures()) * projectors);
         for (turn, display_from_world) in (0..).zip(stage.stand.displays_from_world()) {
-            let output =
-                if stage.stand.is_turning() { numbered(&self.output, turn) } else { self.output.clone() };
             (made.samples, made.map_reads) = (0, 0);
             let views = stage.array.views(display_from_world);
             for (index, batch) in (0..).zip(stage.array.batches()) {
@@ -228,7 +244,7 @@ impl ProjectorsArgs {
                     })
                     .collect::<Result<Vec<_>, _>>()?;
                 let frame = stage.array.pack_batch(batch, &images).map_err(Failure::input)?;
-                let path = numbered(&output, index);
+                let path = self.path(turn, index);
                 write_png(&path, &frame, self.bits)?;
                 made.outputs.push(path);
             }

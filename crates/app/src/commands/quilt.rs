@@ -8,7 +8,7 @@ use crate::display::{Display, DisplayArgs, read_calibration};
 use crate::failure::Failure;
 use crate::look::{Look, LookArgs};
 use crate::many_views::{AnchorRequest, ViewsArgs};
-use crate::output::{check_writable, described, print_json};
+use crate::output::{check_apart, check_writable, described, print_json};
 use crate::picture::{Bits, write_png, write_png_with_exif};
 use crate::progress::Bar;
 use crate::quilt_file::{QuiltPaths, metadata};
@@ -152,6 +152,7 @@ pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
     };
     let paths = QuiltPaths::new(&args.output, &display)?;
     check_writable(&paths.quilt(args.stand.is_turning().then_some(0)), "png")?;
+    args.check_apart(&paths)?;
     let mut loaded = args.volume.load()?;
     let look = args.look.resolve(&loaded.volume)?;
     loaded.volume.fill_non_finite(look.settings.window.lo());
@@ -173,6 +174,14 @@ pub(crate) fn run(args: &QuiltArgs) -> Result<(), Failure> {
 }
 
 impl QuiltArgs {
+    fn check_apart(&self, paths: &QuiltPaths) -> Result<(), Failure> {
+        let numbers = (0..self.stand.pictures()).map(|turn| self.stand.is_turning().then_some(turn));
+        let interlaced = |number| self.interlace.is_some().then(|| paths.interlaced(number));
+        let outputs = numbers.flat_map(|number| [Some(paths.quilt(number)), interlaced(number)]).flatten();
+        let flags = [self.look.file(), self.display.file(), self.interlace.as_deref()];
+        check_apart(outputs, [self.volume.file.as_path()].into_iter().chain(flags.into_iter().flatten()))
+    }
+
     fn warn_of_ghosts(&self, stage: &Stage) {
         let limits = stage.display.depth_range(self.sampling.sampling(), self.most_disparity);
         let [behind_m, before_m] = [-stage.stand.reach_m.start, stage.stand.reach_m.end];

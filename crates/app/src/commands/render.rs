@@ -7,7 +7,7 @@ use crate::camera::{CameraArgs, Stereo, turn_deg};
 use crate::failure::Failure;
 use crate::heat_map::{heat_map, most_reads};
 use crate::look::{Look, LookArgs, ModeName};
-use crate::output::{check_writable, described, numbered, print_json};
+use crate::output::{check_apart, check_writable, described, numbered, print_json};
 use crate::pairing::{PairArgs, PairRequest, Pairing};
 use crate::picture::{Bits, Picture};
 use crate::progress::Bar;
@@ -109,6 +109,9 @@ struct Made {
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     check_writable(&args.output, args.camera.stereo.extension())?;
+    let frames = args.frames();
+    let outputs = (0..frames).filter_map(|index| args.path_of(index, frames));
+    check_apart(outputs, [args.volume.file.as_path()].into_iter().chain(args.look.file()))?;
     args.camera.check()?;
     args.look.check()?;
     args.check_detail()?;
@@ -169,14 +172,18 @@ impl RenderArgs {
         volume: &'v Volume,
         needs_gpu: bool,
     ) -> Result<Engine<'v>, Failure> {
-        let frames = self.turntable.or(self.frames).unwrap_or(1);
         let longest = volume.grid().dims().into_iter().max().unwrap_or(1);
         let job = Job {
-            rays: self.rays() * u64::from(frames + u32::from(self.warms_up())),
+            rays: self.rays() * u64::from(self.frames() + u32::from(self.warms_up())),
             samples_per_ray: longest as f64 * self.look.sampling_factor,
             needs_gpu,
         };
         Engine::open(choice, &job, volume, self.look.storage.kind(volume))
+    }
+
+    /// Frames that are cast.
+    fn frames(&self) -> u32 {
+        self.turntable.or(self.frames).unwrap_or(1)
     }
 
     /// Pixels of one frame.
@@ -199,7 +206,7 @@ impl RenderArgs {
         request: Option<PairRequest>,
     ) -> Result<Made, Failure> {
         engine.add_levels(coarser)?;
-        let frames = self.turntable.or(self.frames).unwrap_or(1);
+        let frames = self.frames();
         let bar = Bar::new("frames", u64::from(frames));
         let shot = match self.level_of_detail {
             None => engine.prepare(parameters, skipping)?,

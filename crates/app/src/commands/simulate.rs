@@ -2,10 +2,9 @@
 
 use crate::display::{Display, DisplayArgs, read_calibration};
 use crate::failure::Failure;
-use crate::output::{check_writable, described, numbered, print_json};
+use crate::output::{check_apart, check_writable, described, numbered, print_json};
 use crate::picture::{Bits, read_png, write_png};
 use crate::progress::Bar;
-use crate::quilt_file::check_name;
 use crate::spec;
 use clap::Args;
 use glam::DVec3;
@@ -78,17 +77,18 @@ enum Shown {
 /// Runs the command.
 pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
     check_writable(&args.output, "png")?;
+    let outputs = args.outputs();
+    let flags = [args.interlaced.as_deref(), args.display.file()];
+    let pictures = args.pictures.iter().map(PathBuf::as_path);
+    check_apart(&outputs, pictures.chain(flags.into_iter().flatten()))?;
     let shown = args.shown()?;
     let eyes = args.eyes(&shown)?;
     for eye in &eyes {
         shown.warn_of_borders(eye);
     }
     let bar = Bar::new("eyes", eyes.len() as u64);
-    let mut outputs = Vec::new();
-    for (index, eye) in (0..).zip(&eyes) {
-        let path = if args.walk.is_some() { numbered(&args.output, index) } else { args.output.clone() };
-        write_png(&path, &shown.seen_from(eye)?, args.bits)?;
-        outputs.push(path);
+    for (path, eye) in outputs.iter().zip(&eyes) {
+        write_png(path, &shown.seen_from(eye)?, args.bits)?;
         bar.advance();
     }
     drop(bar);
@@ -96,6 +96,19 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
 }
 
 impl SimulateArgs {
+    /// Places of the eye.
+    fn steps(&self) -> u32 {
+        if self.walk.is_some() { self.frames.unwrap_or(USUAL_FRAMES) } else { 1 }
+    }
+
+    /// A picture for each of them.
+    fn outputs(&self) -> Vec<PathBuf> {
+        match self.walk {
+            Some(_) => (0..self.steps()).map(|step| numbered(&self.output, step)).collect(),
+            None => vec![self.output.clone()],
+        }
+    }
+
     fn shown(&self) -> Result<Shown, Failure> {
         let lenses = self.interlaced.as_deref().map(read_calibration).transpose()?;
         match (self.display.resolve(lenses.as_ref())?, lenses) {
@@ -107,9 +120,21 @@ impl SimulateArgs {
                         self.pictures.len()
                     )));
                 };
-                Shown::behind_lenses(display, lenses, path)
+                let picture = read_png(path)?;
+                match lenses {
+                    Some(lenses) => Ok(Shown::Interlaced { display, lenses, picture }),
+                    None => self.quilt(display, path, &picture),
+                }
             }
         }
+    }
+
+    fn quilt(&self, display: QuiltDisplay, path: &Path, quilt: &RgbImage) -> Result<Shown, Failure> {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let display = self.display.of_quilt(display, &name, [quilt.width, quilt.height])?;
+        let views = display.views_of(quilt);
+        let views = views.map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        Ok(Shown::Quilt { display, views })
     }
 
     fn eyes(&self, shown: &Shown) -> Result<Vec<Eye>, Failure> {
@@ -117,7 +142,7 @@ impl SimulateArgs {
         let size_px = self.size.unwrap_or(shown.usual_size_px());
         let eye = |position_m| Eye::new(position_m, size_px).map_err(Failure::input);
         let Some(to_m) = self.walk else { return Ok(vec![eye(from_m)?]) };
-        let last = self.frames.unwrap_or(USUAL_FRAMES) - 1;
+        let last = self.steps() - 1;
         (0..=last).map(|step| eye(from_m.lerp(to_m, f64::from(step) / f64::from(last)))).collect()
     }
 
@@ -139,20 +164,6 @@ impl SimulateArgs {
 }
 
 impl Shown {
-    fn behind_lenses(
-        display: QuiltDisplay,
-        lenses: Option<Lenticular>,
-        path: &Path,
-    ) -> Result<Self, Failure> {
-        let bad = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-        if let Some(lenses) = lenses {
-            return Ok(Self::Interlaced { display, lenses, picture: read_png(path)? });
-        }
-        check_name(&path.file_stem().unwrap_or_default().to_string_lossy(), &display)?;
-        let views = display.views_of(&read_png(path)?).map_err(|error| bad(&error))?;
-        Ok(Self::Quilt { display, views })
-    }
-
     fn of_frames(array: ProjectorArray, paths: &[PathBuf]) -> Result<Self, Failure> {
         let mut images: Vec<Option<RgbImage>> = vec![None; array.projectors().len()];
         for path in paths {

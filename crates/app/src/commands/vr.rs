@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::layering::LayeringArgs;
-use crate::output::{print, print_json};
+use crate::output::{check_apart, print, print_json};
 use crate::progress::Bar;
 use crate::spec;
 use crate::transfer_spec;
@@ -208,6 +208,7 @@ pub(crate) fn run(args: &VrArgs) -> Result<(), Failure> {
     commands.extend(args.pictures.commands()?);
     commands.extend(args.tf.clone().map(Command::Preset));
     args.pictures.check(args.headset)?;
+    check_apart(&args.record, args.replay.as_deref().into_iter().chain(args.file.as_deref()))?;
     let record = args.record.as_deref().map(Record::begin).transpose()?;
     let mut company = Company { mirror: None, record, interrupt: Interrupt::default() };
     let recording = args.replay.as_deref().map(read_recording).transpose()?;

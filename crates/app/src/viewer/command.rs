@@ -1,12 +1,14 @@
 //! What the viewer can be told to do, by a panel, a key or a script.
 
 use super::state::Edit;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// One thing to do.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case", remote = "Self")]
 pub(crate) enum Command {
     /// Opens a volume, or a saved view with the volume that it shows.
     Open(PathBuf),
@@ -31,8 +33,22 @@ pub(crate) enum Command {
     /// Ends the program.
     Quit,
     /// Changes what is shown.
-    #[serde(untagged)]
+    #[serde(skip)]
     Edit(Edit),
+}
+
+impl<'de> Deserialize<'de> for Command {
+    /// Edits are written as commands are. What is neither is told as what it looks like.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = Value::deserialize(deserializer)?;
+        let read = match Self::deserialize(&value) {
+            Err(error) if error.to_string().starts_with("unknown variant") => {
+                Edit::deserialize(&value).map(Self::Edit)
+            }
+            read => read,
+        };
+        read.map_err(D::Error::custom)
+    }
 }
 
 impl From<Edit> for Command {
@@ -56,7 +72,22 @@ mod tests {
             let directions = 4;
             Edit::Shading(wheatstone_core::scene::Shading::Directional { directions }).into()
         });
-        assert!(parse(r#"{"shading": "gouraud"}"#).is_err());
-        assert!(parse(r#"{"dance": 1}"#).is_err());
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_command_is_told() {
+        for (text, says) in [
+            (r#"{"shading": "gouraud"}"#, "gouraud"),
+            (r#"{"dance": 1}"#, "`dance`"),
+            (r#"{"mode": "mri"}"#, "`mri`"),
+            (r#"{"save": 5}"#, "path string"),
+            (r#"{"turntable": {"path": "a.png"}}"#, "`pictures`"),
+            (r#"{"display": "mine.json"}"#, "mine.json: files of displays"),
+            (r#"{"display": "folder/mine.JSON"}"#, "mine.JSON: files of displays"),
+            ("7", "7"),
+        ] {
+            let error = serde_json::from_str::<Command>(text).unwrap_err().to_string();
+            assert!(error.contains(says) && !error.contains("untagged"), "{text}: {error}");
+        }
     }
 }

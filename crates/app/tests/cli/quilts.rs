@@ -240,6 +240,43 @@ fn an_eye_where_a_camera_was_sees_its_view() {
 }
 
 #[test]
+fn the_name_of_a_quilt_tells_how_it_is_laid_out() {
+    use wheatstone_core::lightfield::quilt::Model;
+    let bench = Bench::new();
+    quilt(&bench, "q.png", &["--volume-size", "0.06", "--before-screen", "0.03"]);
+    let picture = open(&bench, "q_qs3x2a1.png");
+    let read = |name: &str, flags: &[&str]| {
+        std::fs::copy(bench.path("q_qs3x2a1.png"), bench.path("copy.png")).unwrap();
+        std::fs::rename(bench.path("copy.png"), bench.path(name)).unwrap();
+        bench.run(&[&["simulate", name, "-o", "seen.png", "--json"], flags].concat())
+    };
+    // Of what the name does not tell the portrait's is taken, whose view cone is as wide.
+    let nearer = Model::Portrait.display().focal_distance_m / 0.5;
+    for view in 0..6 {
+        let eye = format!("{},0,{}", camera_x_m(view) * nearer, 0.5 * nearer);
+        for name in ["q_qs3x2a1.png", "q_qs3x2a1_v2.png"] {
+            assert_eq!(read(name, &["--eye", &eye]).code, 0);
+            let seen = open(&bench, "seen.png");
+            let furthest = seen.iter().zip(tile(&picture, view).iter()).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(seen.dimensions() == (32, 32) && furthest <= Some(1), "{name} {view}: {furthest:?}");
+        }
+    }
+    let go = Model::Go.display();
+    let known = read("q_qs11x6a0.5625.png", &[]).json();
+    assert_eq!((&known["screen_size_m"], &known["size"]), (&json!(go.screen_size_m()), &json!([8, 10])));
+    assert_eq!(known["eyes_m"][0][2], go.focal_distance_m);
+    for (flags, says) in [
+        (&["--columns", "4"][..], "3x2 views"),
+        (&["--aspect", "0.75"], "aspect 1:"),
+        (&["--display", "go"], "q_qs11x6a0.5625"),
+        (&["--quilt-size", "96x96"], "must be of 96x96"),
+    ] {
+        let run = read("q_qs3x2a1.png", flags);
+        assert!(run.code == 2 && run.stderr.contains(says), "{flags:?}: {}", run.stderr);
+    }
+}
+
+#[test]
 fn a_walk_is_a_numbered_sequence() {
     let bench = Bench::new();
     quilt(&bench, "q.png", &[]);
@@ -438,6 +475,6 @@ fn views_come_of_anchors() {
     let same = bench.run(&["compare", "each_qs3x2a1.png", "anchors_qs3x2a1.png", "--json"]).json();
     assert!(same["dssim"].as_f64().unwrap() < 0.01, "{same}");
     let error = made("mip.png", &["--mode", "mip", "--views-method", "anchors"]).unwrap_err();
-    assert!(error.contains("--views-method anchors: mode Mip: only composites"), "{error}");
+    assert!(error.contains("--views-method anchors: mode mip: only composites"), "{error}");
     assert_eq!(made("mip.png", &["--mode", "mip"]).unwrap()["method"], "each");
 }

@@ -138,9 +138,12 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     let before = bench.files();
     let wobble = bench.try_render("x.gif", &["--stereo", "wobble", "--bits", "16"]);
     assert!(wobble.code == 2 && wobble.stderr.contains("--bits 16"), "{}", wobble.stderr);
-    for (output, says) in
-        [("x.gif", ".png"), ("no/such/x.png", "no/such"), ("x.jpg", ".png"), ("folder.png", "folder.png")]
-    {
+    for (output, says) in [
+        ("x.gif", ".png"),
+        ("no/such/x.png", "no/such: no such folder"),
+        ("x.jpg", ".png"),
+        ("folder.png", "folder.png"),
+    ] {
         let run = bench.try_render(output, &[]);
         assert_eq!(run.code, 2, "{output}: {}", run.stderr);
         assert!(run.stderr.contains(says), "{output}: {}", run.stderr);
@@ -175,6 +178,36 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
         assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);
     }
     assert_eq!(bench.files(), before);
+}
+
+#[test]
+fn what_is_read_is_not_replaced() {
+    let bench = Bench::new();
+    let files =
+        ["q_qs3x2a1.png", "walk_0001.png", "v.png", "v_qs8x6a0.75.png", "v_0003.png", "r.jsonl", "d.json"];
+    for file in files {
+        std::fs::write(bench.path(file), [7; 64]).unwrap();
+    }
+    std::fs::create_dir(bench.path("sub")).unwrap();
+    let before = bench.files();
+    let raw = |command, file, output| {
+        [command, file, "--raw-size", "4x4x4", "--raw-type", "uint8", "--backend", "cpu", "-o", output]
+    };
+    for args in [
+        &["simulate", "q_qs3x2a1.png", "-o", "sub/../q_qs3x2a1.png"][..],
+        &["simulate", "walk_0001.png", "-o", "walk.png", "--walk", "0,0,1"],
+        &["calibrate", "r.jsonl", "--display", "d.json", "-o", "./d.json"],
+        &["calibrate", "d.json", "-o", "d.json"],
+        &raw("render", "v.png", "./v.png"),
+        &raw("quilt", "v_qs8x6a0.75.png", "v.png"),
+        &raw("projectors", "v_0003.png", "v.png"),
+        &["vr", "sphere.nrrd", "--headset", "none", "--replay", "r.jsonl", "--record", "r.jsonl"],
+    ] {
+        let run = bench.run(args);
+        assert!(run.code == 2 && run.stderr.contains("would be replaced"), "{args:?}: {}", run.stderr);
+        assert_eq!(bench.files(), before, "{args:?}");
+    }
+    assert!(files.iter().all(|file| std::fs::read(bench.path(file)).unwrap() == [7; 64]));
 }
 
 #[test]

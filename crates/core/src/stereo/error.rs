@@ -63,7 +63,7 @@ pub enum StereoError {
         derived: [f64; 2],
     },
     /// A mode whose samples do not add up.
-    #[error("mode {0:?}: only composites and X-rays can be derived")]
+    #[error("mode {name}: only composites and X-rays can be derived", name = .0.name())]
     Mode(Mode),
     /// Rays far beyond the picture's edges are needed: the volume comes too near to the eyes, or the windows are far apart.
     #[error("{needed} columns of rays are needed, but at most {most} are cast: move the near plane away")]

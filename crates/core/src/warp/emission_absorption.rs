@@ -22,7 +22,7 @@ const MOST_LAYERS_OF_PICTURE: u64 = 1 << 28;
 #[non_exhaustive]
 pub enum LayerError {
     /// A mode whose samples are not composited.
-    #[error("mode {0:?}: only composites have layers")]
+    #[error("mode {name}: only composites have layers", name = .0.name())]
     Mode(Mode),
     /// No layers, or too many.
     #[error("{0} layers per pixel: must be 1 to {MOST_LAYERS}")]

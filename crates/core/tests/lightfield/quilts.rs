@@ -102,14 +102,17 @@ fn names_are_those_that_players_know() {
     let read = |name: &str| name.parse::<QuiltName>().unwrap();
     assert_eq!(read("image_qs5x9a1.77z1.2f0.0").aspect, 1.77);
     assert_eq!(read("A_qs1x1_QS8x6a0.75").stem, "A_qs1x1");
-    for wrong in ["bonsai", "a_qs8x6", "a_qs0x6a1", "a_qs8x6a", "a_qs8x6a0", "a_qs-8x6a1", "a_qs8x6a1e999.x"]
+    assert_eq!(read("a_qs8x6a0.75_v2.3"), read("a_qs8x6a0.75"));
+    assert_eq!(read("a_qs8x6a0.75_qs5x9a1.77"), read("a_qs8x6a0.75"));
+    assert_eq!(read("a_qs8x6a1.5.2").aspect, 1.5);
+    for wrong in
+        ["bonsai", "a_qs8x6", "a_qs0x6a1", "a_qs8x6a", "a_qs8x6a0", "a_qs-8x6a1", "a_qs8x6a.", "a_qs8x6a-1"]
     {
-        if let Ok(name) = wrong.parse::<QuiltName>() {
-            assert_eq!(wrong, "a_qs8x6a1e999.x", "{name:?}");
-        }
+        assert!(wrong.parse::<QuiltName>().is_err(), "{wrong}");
     }
+    assert_eq!(read("a_qs8x6a1e999").aspect, 1.0);
     let fault = "bonsai".parse::<QuiltName>().unwrap_err().to_string();
-    assert!(fault.starts_with("\"bonsai\" does not end as quilts' names do"), "{fault}");
+    assert!(fault.starts_with("\"bonsai\" does not tell what quilts' names do"), "{fault}");
 }
 
 #[test]

@@ -66,8 +66,7 @@ impl ShownDisplay {
     /// A known display, or that of a file, whose description is kept.
     pub(crate) fn named(name: &str) -> Result<Self, crate::failure::Failure> {
         let display = display::named(name)?;
-        let is_file = name.ends_with(".json");
-        let form = if is_file { display.to_json() } else { Value::String(name.to_owned()) };
+        let form = if display::is_file(name) { display.to_json() } else { Value::String(name.to_owned()) };
         Ok(Self { form, display })
     }
 
@@ -88,9 +87,12 @@ impl TryFrom<Value> for ShownDisplay {
     fn try_from(form: Value) -> Result<Self, String> {
         let display = match &form {
             // Files are read by flags alone: a saved view holds what it shows.
-            Value::String(name) if !name.ends_with(".json") => {
-                display::named(name).map_err(|failure| failure.to_string())?
+            Value::String(name) if display::is_file(name) => {
+                return Err(format!(
+                    "{name}: files of displays are read by --display alone; this must be the name of a display or its description"
+                ));
             }
+            Value::String(name) => display::named(name).map_err(|failure| failure.to_string())?,
             Value::Object(_) => display::from_json(&form.to_string()).map_err(|error| error.to_string())?,
             other => return Err(format!("{other}: must be the name of a display or its description")),
         };
@@ -292,10 +294,25 @@ mod tests {
             assert_eq!(serde_json::to_value(&light_field).unwrap()["display"], form);
         }
         assert!(of(json!({ "display": "tv" })).unwrap_err().contains("portrait"));
-        assert!(of(json!({ "display": "x.json" })).unwrap_err().contains("must be the name"));
+        for file in ["x.json", "folder/x.JSON"] {
+            assert!(of(json!({ "display": file })).unwrap_err().contains("read by --display alone"));
+        }
+        assert!(of(json!({ "display": 5 })).unwrap_err().contains("must be the name"));
         assert!(of(json!({ "display": { "columns": 3 } })).unwrap_err().contains("rows"));
         assert!(of(json!({ "calibration": { "pitch": 1 } })).unwrap_err().contains("slope"));
         assert!(of(json!({ "eye_m": [0.0, 0.0, -1.0] })).unwrap_err().contains("before the screen"));
+    }
+
+    #[test]
+    fn a_file_is_kept_as_its_description_whatever_the_capitals_of_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let description = Display::Lenses(Model::Go.display()).to_json();
+        for name in ["mine.json", "MINE.JSON"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, description.to_string()).unwrap();
+            let shown = ShownDisplay::named(path.to_str().unwrap()).unwrap();
+            assert_eq!(Value::from(shown), description);
+        }
     }
 
     #[test]

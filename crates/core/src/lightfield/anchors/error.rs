@@ -12,7 +12,7 @@ pub enum AnchorError {
     #[error("there are no views")]
     NoViews,
     /// A mode whose samples do not add up behind each other.
-    #[error("mode {0:?}: only composites can be derived")]
+    #[error("mode {name}: only composites can be derived", name = .0.name())]
     Mode(Mode),
     /// Views that do not look side by side, as those of projectors.
     #[error("the views are not side by side: {0}")]

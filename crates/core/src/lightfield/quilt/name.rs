@@ -6,7 +6,8 @@ use std::str::FromStr;
 use thiserror::Error;
 
 /// `NAME_qs{columns}x{rows}a{aspect}`, by which players know a quilt (<https://lookingglassfactory.com/tutorial/what-is-a-quilt>);
-/// without the ending of the file's name.
+/// without the ending of the file's name. The maker's programs (its Unity plugin, its Blender add-on) look for that anywhere in a name
+/// and some write more after it, as `z1.2f0` for zoom and focus.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuiltName {
     /// What precedes `_qs`.
@@ -22,7 +23,7 @@ pub struct QuiltName {
 /// A name that does not tell how a quilt is laid out.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
-    "{0:?} does not end as quilts' names do: in _qs8x6a0.75, columns x rows and the screen's width over its height"
+    "{0:?} does not tell what quilts' names do, as _qs8x6a0.75: columns x rows and the screen's width over its height"
 )]
 pub struct NotAQuiltName(pub String);
 
@@ -44,27 +45,37 @@ impl fmt::Display for QuiltName {
 impl FromStr for QuiltName {
     type Err = NotAQuiltName;
 
-    /// Reads the last `_qs` of a name, without regard to capitals. What follows the aspect from a letter on (as in `z1.2f0`) is left
-    /// out.
+    /// Reads what the first `_qs` of a name tells that is followed by a layout, without regard to capitals, and leaves out what comes
+    /// after the aspect.
     fn from_str(name: &str) -> Result<Self, NotAQuiltName> {
-        parse(name).ok_or_else(|| NotAQuiltName(name.to_owned()))
+        let lower = name.to_ascii_lowercase();
+        let mut layouts = lower.match_indices("_qs").filter_map(|(at, mark)| {
+            let (columns, rows, aspect) = layout(&lower[at + mark.len()..])?;
+            Some(Self { stem: name[..at].to_owned(), columns, rows, aspect })
+        });
+        layouts.next().ok_or_else(|| NotAQuiltName(name.to_owned()))
     }
 }
 
-fn parse(name: &str) -> Option<QuiltName> {
-    let lower = name.to_ascii_lowercase();
-    let at = lower.rfind("_qs")?;
-    let (columns, rest) = lower[at + 3..].split_once('x')?;
+/// Columns, rows and aspect at the beginning of a text.
+fn layout(text: &str) -> Option<(u32, u32, f64)> {
+    let (columns, rest) = text.split_once('x')?;
     let (rows, rest) = rest.split_once('a')?;
-    let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
-    let aspect: f64 = rest[..end].trim_end_matches('.').parse().ok()?;
-    let [columns, rows] = [columns, rows].map(whole_number);
-    let (columns, rows) = (columns?, rows?);
-    let is_sound = columns > 0 && rows > 0 && aspect > 0.0 && aspect.is_finite();
-    is_sound.then(|| QuiltName { stem: name[..at].to_owned(), columns, rows, aspect })
+    let (columns, rows) = (whole_number(columns)?, whole_number(rows)?);
+    let aspect = decimal_number(rest)?;
+    (columns > 0 && rows > 0 && aspect > 0.0 && aspect.is_finite()).then_some((columns, rows, aspect))
 }
 
 /// Digits alone: no sign.
 fn whole_number(text: &str) -> Option<u32> {
     text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten()
+}
+
+/// The number at the beginning of a text: digits, with one point at most.
+fn decimal_number(text: &str) -> Option<f64> {
+    let digits_end =
+        |from: usize| text[from..].find(|c: char| !c.is_ascii_digit()).map_or(text.len(), |end| from + end);
+    let whole = digits_end(0);
+    let end = if text[whole..].starts_with('.') { digits_end(whole + 1) } else { whole };
+    text[..end].parse().ok()
 }
