@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn what_is_wrong_with_a_command_is_told() {
         for (text, says) in [
-            (r#"{"shading": "gouraud"}"#, "gouraud"),
+            (r#"{"shading": "gouraud"}"#, "none, phong"),
             (r#"{"dance": 1}"#, "`dance`"),
             (r#"{"mode": "mri"}"#, "`mri`"),
             (r#"{"save": 5}"#, "path string"),
