@@ -22,7 +22,7 @@ pub const LEAST_VIEWS_PER_ANCHOR: u32 = 3;
 /// A view that is cast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anchor {
-    /// The view, with as many columns more on either side as views derived of it see.
+    /// The view, with as many columns more on either side as views derived of it see, and shaded from the middle one of these.
     pub view: View,
     /// Which view it is.
     pub index: usize,
@@ -186,9 +186,20 @@ impl<'a> Groups<'a> {
         Ok(AnchorPlan { anchors, derived, slabs })
     }
 
+    /// The view in the middle of those that an anchor is nearest to.
+    fn middle(&self, index: usize) -> &View {
+        let is_served = |view: &usize| {
+            let nearest = self.indices.iter().min_by_key(|anchor| anchor.abs_diff(*view));
+            nearest == Some(&index)
+        };
+        let mut served = (0..self.views.len()).filter(is_served);
+        let first = served.next().unwrap_or(index);
+        &self.views[(first + served.next_back().unwrap_or(first)) / 2]
+    }
+
     /// An anchor with the columns beyond its edges in which the body is seen, at most as many as it has.
     fn anchor(&self, index: usize) -> Result<Anchor, AnchorError> {
-        let view = self.views[index];
+        let view = View { shaded_from: Some(self.middle(index).viewpoint()), ..self.views[index] };
         let Projection::Perspective(frustum) = view.projection else {
             unreachable!("pairs of other views are refused")
         };
