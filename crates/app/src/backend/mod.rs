@@ -3,6 +3,7 @@
 mod cpu;
 mod gpu;
 mod resolved;
+mod truth;
 
 use crate::failure::Failure;
 use crate::pairing::Pairing;

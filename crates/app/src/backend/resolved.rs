@@ -5,13 +5,9 @@ use crate::failure::Failure;
 use crate::skipping::Skipping;
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::detail::LevelOfDetail;
-use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::{Resolution, coarsest_alike};
 use wheatstone_core::metrics::compare;
 use wheatstone_core::view::View;
-
-/// Rays through each pixel of the truth, along each of its sides.
-const RAYS: u32 = 2;
 
 /// A shot at the resolution of a display.
 #[derive(Debug, Clone, Copy)]
@@ -34,8 +30,7 @@ impl Engine<'_> {
         let full = self.prepare(parameters, skipping)?;
         let mut shots = vec![full];
         if let Some(view) = views.get(views.len() / 2) {
-            let truth = View { size: view.size.map(|side| side * RAYS), ..*view };
-            let truth = self.over_black(full, &truth)?.averaged(RAYS);
+            let truth = self.truth(full, view)?;
             let all = LevelOfDetail::Resolved { resolution, coarsest: usize::MAX };
             let slabs = all.slabs(view, parameters, all.level_count(self.level_count()));
             let last = slabs.iter().map(|slab| slab.level).max().unwrap_or(0);
@@ -51,10 +46,5 @@ impl Engine<'_> {
         }
         let coarsest = shots.len() - 1;
         Ok(ResolvedShot { shot: shots[coarsest], longest_step: 1 << coarsest })
-    }
-
-    fn over_black(&mut self, shot: Shot, view: &View) -> Result<RgbImage, Failure> {
-        self.cast(shot, &[*view])?;
-        Ok(self.read()?.swap_remove(0).image.over_background([0.0; 3]))
     }
 }

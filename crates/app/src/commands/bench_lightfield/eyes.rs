@@ -44,9 +44,6 @@ const AWAY: f64 = 2.0;
 /// Places on a walk from its middle to either end.
 const STEPS: i32 = 5;
 
-/// Rays through each pixel of what there would be to see, along each of its sides: pixels of displays are areas, not points.
-const RAYS: u32 = 2;
-
 impl Walk {
     pub(super) const ALL: [Self; 3] = [Self::Up, Self::Sideways, Self::Away];
 
@@ -94,14 +91,10 @@ pub(super) fn sights(
     let mut sights = vec![Vec::new(); frames.len()];
     for walk in Walk::ALL {
         for eye_m in walk.places_m(array.virtual_viewer_m()) {
-            let eye = |rays: u32| {
-                Eye::new(eye_m, description.image_size_px.map(|side| side * rays)).map_err(Failure::input)
-            };
-            let there = eye(RAYS)?.view(description.screen_size_m, display_from_world);
-            engine.cast(shot, &[there])?;
-            let truth = engine.read()?.swap_remove(0).image.over_background([0.0; 3]).averaged(RAYS);
+            let eye = Eye::new(eye_m, description.image_size_px).map_err(Failure::input)?;
+            let truth = engine.truth(shot, &eye.view(description.screen_size_m, display_from_world))?;
             for (images, sights) in frames.iter().zip(&mut sights) {
-                let seen = array.seen_from(&eye(1)?, images).map_err(Failure::input)?;
+                let seen = array.seen_from(&eye, images).map_err(Failure::input)?;
                 let dssim = compare(&seen, &truth).map_err(Failure::input)?.dssim();
                 sights.push(Sight { walk, eye_m, dssim });
             }

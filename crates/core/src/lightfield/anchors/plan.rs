@@ -128,6 +128,11 @@ fn indices(views: usize, anchors: usize) -> Vec<usize> {
     (0..anchors).map(|anchor| (anchor as f64 * last / (anchors - 1) as f64).round() as usize).collect()
 }
 
+/// Which of some anchors is nearest to a view; itself, if there are none.
+fn nearest(indices: &[usize], view: usize) -> usize {
+    indices.iter().copied().min_by_key(|anchor| anchor.abs_diff(view)).unwrap_or(view)
+}
+
 /// Views, and which of them are anchors.
 struct Groups<'a> {
     views: &'a [View],
@@ -154,8 +159,7 @@ impl<'a> Groups<'a> {
         let indices = indices(views.len(), count as usize);
         let (mut largest_k, mut least_m) = (0.0_f64, 0.0_f64);
         for (index, view) in views.iter().enumerate() {
-            let nearest = indices.iter().min_by_key(|anchor| anchor.abs_diff(index));
-            let epipolar = Epipolar::new(&views[*nearest.unwrap_or(&index)], view)?;
+            let epipolar = Epipolar::new(&views[nearest(&indices, index)], view)?;
             largest_k = largest_k.max(epipolar.k());
             least_m = least_m.max(epipolar.least_depth_m());
         }
@@ -188,11 +192,7 @@ impl<'a> Groups<'a> {
 
     /// The view in the middle of those that an anchor is nearest to.
     fn middle(&self, index: usize) -> &View {
-        let is_served = |view: &usize| {
-            let nearest = self.indices.iter().min_by_key(|anchor| anchor.abs_diff(*view));
-            nearest == Some(&index)
-        };
-        let mut served = (0..self.views.len()).filter(is_served);
+        let mut served = (0..self.views.len()).filter(|&view| nearest(&self.indices, view) == index);
         let first = served.next().unwrap_or(index);
         &self.views[(first + served.next_back().unwrap_or(first)) / 2]
     }

@@ -1,0 +1,23 @@
+//! Pictures that others are measured by.
+
+use super::{Engine, Shot};
+use crate::failure::Failure;
+use wheatstone_core::image::RgbImage;
+use wheatstone_core::view::View;
+
+/// Rays through each pixel of the truth, along each of its sides: pixels are areas, not points.
+const RAYS: u32 = 2;
+
+impl Engine<'_> {
+    /// The picture of a view before black.
+    pub(crate) fn over_black(&mut self, shot: Shot, view: &View) -> Result<RgbImage, Failure> {
+        self.cast(shot, &[*view])?;
+        Ok(self.read()?.swap_remove(0).image.over_background([0.0; 3]))
+    }
+
+    /// What there is to see in a view, before black: means of several rays through each pixel.
+    pub(crate) fn truth(&mut self, shot: Shot, view: &View) -> Result<RgbImage, Failure> {
+        let finer = View { size: view.size.map(|side| side * RAYS), ..*view };
+        Ok(self.over_black(shot, &finer)?.averaged(RAYS))
+    }
+}
