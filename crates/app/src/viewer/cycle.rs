@@ -151,7 +151,7 @@ impl Viewer {
             }
             let waited = self.gpu.wait_for(submission);
             self.survive(waited.map_err(Failure::Gpu))?;
-            self.report.shown(has_picture);
+            self.report.shown(has_picture, self.gpu.device());
             let due: Vec<Instant> = due.iter().map(|due| due.at).collect();
             self.report.latencies.record(&due, Instant::now());
         } else {

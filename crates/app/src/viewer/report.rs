@@ -1,11 +1,11 @@
 //! What a run tells when it ends.
 
 use super::latency::Latencies;
-use super::memory::resident_bytes;
+use super::memory::Held;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-/// Time between two looks at the memory.
+/// Time between two looks at what is held.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
 /// What has been measured.
@@ -18,7 +18,7 @@ pub(crate) struct Report {
     pub(crate) refreshes: Latencies,
     pub(crate) latencies: Latencies,
     pub(crate) failures: Vec<String>,
-    memory_bytes: Vec<u64>,
+    held: Vec<Held>,
     looked: Instant,
 }
 
@@ -32,13 +32,13 @@ impl Report {
             refreshes: Latencies::default(),
             latencies: Latencies::default(),
             failures: Vec::new(),
-            memory_bytes: Vec::new(),
+            held: Vec::new(),
             looked: begun,
         }
     }
 
     /// Something is shown: a window, and perhaps a volume in it.
-    pub(crate) fn shown(&mut self, has_picture: bool) {
+    pub(crate) fn shown(&mut self, has_picture: bool, device: &wgpu::Device) {
         let since = self.begun.elapsed();
         self.opened.get_or_insert(since);
         if has_picture {
@@ -46,7 +46,7 @@ impl Report {
         }
         if self.looked.elapsed() >= LOOK_EVERY {
             self.looked = Instant::now();
-            self.memory_bytes.extend(resident_bytes());
+            self.held.push(Held::now(device));
         }
     }
 
@@ -60,7 +60,7 @@ impl Report {
             "seconds": self.begun.elapsed().as_secs_f64(),
             "refresh_ms": self.refreshes.to_json(),
             "event_to_present_ms": self.latencies.to_json(),
-            "memory_bytes": self.memory_bytes,
+            "held": self.held,
             "failures": self.failures,
         })
     }

@@ -7,6 +7,17 @@ use std::time::{Duration, Instant};
 /// How often the device is asked whether it is done.
 const POLL_PERIOD: Duration = Duration::from_micros(500);
 
+/// Notes when a submission is done: once it is dropped, because wgpu drops a callback without calling it if a window cannot be
+/// configured because another thread gives the device work.
+#[derive(Debug)]
+struct DoneWhenDropped(Arc<OnceLock<Instant>>);
+
+impl Drop for DoneWhenDropped {
+    fn drop(&mut self) {
+        self.0.get_or_init(Instant::now);
+    }
+}
+
 /// Submission to completion, in equal parts for all pieces; a thread watches the device meanwhile.
 #[derive(Debug, Default)]
 pub(super) struct HostClock {
@@ -31,10 +42,8 @@ impl HostClock {
     ) {
         let submitted = Instant::now();
         let done = Arc::new(OnceLock::new());
-        let on_done = Arc::clone(&done);
-        queue.on_submitted_work_done(move || {
-            on_done.get_or_init(Instant::now);
-        });
+        let on_done = DoneWhenDropped(Arc::clone(&done));
+        queue.on_submitted_work_done(move || drop(on_done));
         let (watched, device) = (Arc::clone(&done), device.clone());
         #[expect(
             clippy::disallowed_methods,

@@ -76,21 +76,30 @@ impl StampClock {
 
     /// What the pieces took, seconds, once the device has finished them.
     pub(super) fn read(&mut self) -> Result<Option<Vec<f64>>, GpuError> {
-        let Some(reading) = &self.reading else { return Ok(None) };
-        let refused = |error: &dyn std::fmt::Display| GpuError::Refused { reason: error.to_string() };
+        let Some(reading) = self.reading.take() else { return Ok(None) };
         match reading.arrived.try_recv() {
-            Err(TryRecvError::Empty) => return Ok(None),
-            Err(error @ TryRecvError::Disconnected) => return Err(refused(&error)),
-            Ok(result) => result.map_err(|error| refused(&error))?,
+            Err(TryRecvError::Empty) => {
+                self.reading = Some(reading);
+                return Ok(None);
+            }
+            Ok(Err(error)) => return Err(refused(&error)),
+            // wgpu drops the callbacks of buffers that it has mapped if a window cannot be configured because another thread gives the
+            // device work.
+            Ok(Ok(())) | Err(TryRecvError::Disconnected) => {}
         }
-        let mapped =
-            self.readable.slice(..reading.bytes).get_mapped_range().map_err(|error| refused(&error))?;
+        let seconds = self.between_stamps(reading.bytes);
+        self.readable.unmap();
+        seconds.map(Some)
+    }
+
+    fn between_stamps(&self, bytes: u64) -> Result<Vec<f64>, GpuError> {
+        let mapped = self.readable.slice(..bytes).get_mapped_range().map_err(|error| refused(&error))?;
         let stamps: &[u64] = bytemuck::cast_slice(&mapped);
         let between = |stamps: &[u64]| stamps[1].saturating_sub(stamps[0]) as f64 * self.tick_s;
-        let seconds = stamps.windows(2).map(between).collect();
-        drop(mapped);
-        self.readable.unmap();
-        self.reading = None;
-        Ok(Some(seconds))
+        Ok(stamps.windows(2).map(between).collect())
     }
+}
+
+fn refused(error: &dyn std::fmt::Display) -> GpuError {
+    GpuError::Refused { reason: error.to_string() }
 }
