@@ -92,6 +92,26 @@ impl RgbImage {
         Self { width, height, rgb }
     }
 
+    /// The mean of pictures of one size.
+    ///
+    /// # Panics
+    /// Without pictures, or if their sizes differ.
+    pub fn mean(pictures: &[Self]) -> Self {
+        let mut mean = Self { rgb: vec![[0.0; 3]; pictures[0].rgb.len()], ..pictures[0] };
+        let share = 1.0 / pictures.len() as f32;
+        for picture in pictures {
+            assert_eq!(
+                [picture.width, picture.height],
+                [mean.width, mean.height],
+                "a mean is of pictures of one size"
+            );
+            for (mean, level) in mean.rgb.iter_mut().flatten().zip(picture.rgb.iter().flatten()) {
+                *mean += share * level;
+            }
+        }
+        mean
+    }
+
     /// Two pictures of equal height side by side, the first on the left.
     ///
     /// # Panics

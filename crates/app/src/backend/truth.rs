@@ -15,6 +15,16 @@ impl Engine<'_> {
         Ok(self.read()?.swap_remove(0).image.over_background([0.0; 3]))
     }
 
+    /// The mean of the pictures of views of one size, before black.
+    pub(crate) fn mean(
+        &mut self,
+        shot: Shot,
+        views: impl Iterator<Item = View>,
+    ) -> Result<RgbImage, Failure> {
+        let pictures = views.map(|view| self.over_black(shot, &view)).collect::<Result<Vec<_>, _>>()?;
+        Ok(RgbImage::mean(&pictures))
+    }
+
     /// What there is to see in a view, before black: means of several rays through each pixel.
     pub(crate) fn truth(&mut self, shot: Shot, view: &View) -> Result<RgbImage, Failure> {
         let finer = View { size: view.size.map(|side| side * RAYS), ..*view };

@@ -18,8 +18,8 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::RgbImage;
-use wheatstone_core::lightfield::ProjectorArray;
 use wheatstone_core::lightfield::calibration::Corrections;
+use wheatstone_core::lightfield::{Coarseness, ProjectorArray};
 use wheatstone_core::volume::Volume;
 use wheatstone_io::Loaded;
 
@@ -110,7 +110,7 @@ struct Stage {
 struct Made {
     projectors_ms: Vec<f64>,
     /// Over those at full detail.
-    longest_step: usize,
+    coarseness: Coarseness,
     samples: u64,
     map_reads: u64,
     leaping: Leaping,
@@ -211,9 +211,9 @@ impl ProjectorsArgs {
         skipping: &Skipping,
     ) -> Result<Made, Failure> {
         engine.add_levels(coarser)?;
-        let ResolvedShot { shot, longest_step } = match stage.resolution {
+        let ResolvedShot { shot, coarseness } = match stage.resolution {
             ResolutionName::Full => {
-                ResolvedShot { shot: engine.prepare(parameters, skipping)?, longest_step: 1 }
+                ResolvedShot { shot: engine.prepare(parameters, skipping)?, coarseness: Coarseness::NONE }
             }
             ResolutionName::Matched => {
                 let first = stage.stand.displays_from_world().next().unwrap_or_default();
@@ -223,7 +223,7 @@ impl ProjectorsArgs {
         };
         let mut made = Made {
             projectors_ms: Vec::new(),
-            longest_step,
+            coarseness,
             samples: 0,
             map_reads: 0,
             leaping: engine.leaping(shot).clone(),
@@ -298,7 +298,8 @@ impl ProjectorsArgs {
                 "frame_size": description.packing.frame_size_px,
                 "frames": array.batches().len(),
                 "resolution": stage.resolution.name(),
-                "longest_step": made.longest_step,
+                "longest_step": made.coarseness.step_ratio(),
+                "voxels_per_step": made.coarseness.voxels_per_step(),
                 "volume_size_m": stand.volume_size_m,
                 "behind_screen_m": -stand.reach_m.start,
                 "before_screen_m": stand.reach_m.end,

@@ -2,7 +2,7 @@
 
 use super::Footprint;
 use crate::cast::CastParameters;
-use crate::lightfield::Resolution;
+use crate::lightfield::{Coarseness, Resolution};
 use crate::view::View;
 use std::ops::Range;
 
@@ -12,13 +12,13 @@ pub enum LevelOfDetail {
     /// Pixels that a voxel covers, and a step at one sample per voxel: between √½ and √2 times as many where there are
     /// levels for it.
     Pixels(f64),
-    /// By steps as long as what a light-field display resolves at each depth from its screen (LF Eq. 5), through voxels half as
-    /// long, for the views of its projectors.
+    /// By steps as long as what a light-field display resolves at each depth from its screen (LF Eq. 5), for the views of its
+    /// projectors.
     Resolved {
         /// What the display resolves.
         resolution: Resolution,
-        /// Steps are at most 2ˡ times as long as at full detail ([`coarsest_alike`](crate::lightfield::coarsest_alike)).
-        coarsest: usize,
+        /// What they bear ([`coarsest_alike`](crate::lightfield::coarsest_alike)).
+        coarseness: Coarseness,
     },
 }
 
@@ -37,16 +37,17 @@ impl LevelOfDetail {
     pub fn level_count(&self, volumes: usize) -> usize {
         match self {
             Self::Pixels(_) => volumes,
-            Self::Resolved { coarsest, .. } => volumes.min(*coarsest) + 1,
+            Self::Resolved { coarseness, .. } => {
+                (volumes + coarseness.finer_voxels).min(coarseness.longest_step.saturating_add(1))
+            }
         }
     }
 
-    /// The level of the volume that steps of a level sample. What a display resolves takes two voxels: means over all of it would give
-    /// thin things other colours.
+    /// The level of the volume that steps of a level sample.
     pub fn sampled(&self, level: usize) -> usize {
         match self {
             Self::Pixels(_) => level,
-            Self::Resolved { .. } => level.saturating_sub(1),
+            Self::Resolved { coarseness, .. } => level.saturating_sub(coarseness.finer_voxels),
         }
     }
 

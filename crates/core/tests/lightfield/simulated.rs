@@ -7,7 +7,7 @@ use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::quilt::{Model, Sampling};
 use wheatstone_core::lightfield::simulator::Eye;
 use wheatstone_core::lightfield::{
-    Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_PIXELS, coarsest_alike,
+    Coarseness, Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_PIXELS, coarsest_alike,
 };
 use wheatstone_core::lit_sphere::Style;
 use wheatstone_core::metrics::{SizeMismatch, compare};
@@ -16,7 +16,7 @@ use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::{Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
-use wheatstone_core::volume::Volume;
+use wheatstone_core::volume::{Volume, Voxels};
 
 const SIZE: [u32; 2] = [80, 60];
 
@@ -115,7 +115,7 @@ struct Deep {
 }
 
 impl Deep {
-    /// 10 cm before and behind the screen, where s(z) is several times the pixel.
+    /// 20 cm long: where its ends are 10 cm from the screen, s(z) is several times the pixel.
     fn new(volume: &Volume) -> Self {
         let scene = Scene::new(volume, 0.2, &Settings::new(volume.full_window(), soft()));
         let mut casters = vec![Caster::new(volume)];
@@ -123,46 +123,53 @@ impl Deep {
         Self { scene, array: display(24, 2.4, SIZE), casters }
     }
 
-    fn views(&self) -> Vec<View> {
-        self.array.views(DAffine3::IDENTITY)
+    /// What there is to see in a view; rays go through pixels of four times the number.
+    fn truth(&self, view: View) -> RgbImage {
+        cast(&self.scene, &[View { size: view.size.map(|side| 4 * side), ..view }]).remove(0).averaged(4)
     }
 
-    fn detail(&self, coarsest: usize) -> LevelOfDetail {
-        LevelOfDetail::Resolved { resolution: self.array.resolution(), coarsest }
+    /// The most that the display's beams can show of a view, which is made of how the world is moved.
+    fn of_beams(&self, view: impl Fn(DAffine3) -> View) -> RgbImage {
+        let views: Vec<View> = self.array.resolution().beam(32).map(view).collect();
+        RgbImage::mean(&cast(&self.scene, &views))
     }
 
-    fn slabs(&self, view: &View, coarsest: usize) -> Vec<Slab> {
-        let detail = self.detail(coarsest);
+    fn slabs(&self, view: &View, coarseness: Coarseness) -> Vec<Slab> {
+        let detail = LevelOfDetail::Resolved { resolution: self.array.resolution(), coarseness };
         detail.slabs(view, &self.scene.parameters, detail.level_count(self.casters.len()))
     }
 
-    /// By steps of at most a level.
-    fn cast(&self, view: &View, coarsest: usize) -> Cast {
-        let detail = self.detail(coarsest);
-        self.slabs(view, coarsest).iter().fold(Cast::nothing(view.size), |front, slab| {
+    fn cast(&self, view: &View, coarseness: Coarseness) -> Cast {
+        let detail = LevelOfDetail::Resolved { resolution: self.array.resolution(), coarseness };
+        self.slabs(view, coarseness).iter().fold(Cast::nothing(view.size), |front, slab| {
             let parameters = self.scene.parameters.of_level(slab.level);
             let caster = &self.casters[detail.sampled(slab.level)];
             caster.cast_behind(&parameters, &Aids::default(), &slab.part_of(view), front)
         })
     }
 
-    /// The coarsest level of steps that the projector in the middle bears.
-    fn coarsest(&self) -> usize {
-        let view = self.views()[12];
-        let truth = self.fine(view, 2);
-        let last = self.slabs(&view, usize::MAX).iter().map(|slab| slab.level).max().unwrap();
-        coarsest_alike(last, |level| {
-            let picture = over_black(&[self.cast(&view, level)]).remove(0);
+    /// Of the views that an eye sees anything of; nothing of the others.
+    fn casts(&self, views: &[View], eye: &Eye, coarseness: Coarseness) -> Vec<Cast> {
+        let is_seen =
+            |index: usize| self.array.views_seen_from(eye).iter().flatten().any(|seen| seen.index == index);
+        let cast = |(index, view): (usize, &View)| match is_seen(index) {
+            true => self.cast(view, coarseness),
+            false => Cast::nothing(view.size),
+        };
+        views.iter().enumerate().map(cast).collect()
+    }
+
+    /// What the projector in the middle bears.
+    fn coarseness(&self, views: &[View]) -> Coarseness {
+        let view = views[12];
+        let truth = self.of_beams(|moved| View { view_from_world: moved * view.view_from_world, ..view });
+        let slabs = self.slabs(&view, Coarseness::ALL);
+        let longest_step = slabs.iter().map(|slab| slab.level).max().unwrap();
+        coarsest_alike(longest_step, |coarseness| {
+            let picture = over_black(&[self.cast(&view, coarseness)]).remove(0);
             Ok::<_, SizeMismatch>(compare(&picture, &truth)?.dssim())
         })
         .unwrap()
-    }
-
-    /// With so many rays along each side of a pixel.
-    fn fine(&self, view: View, rays: u32) -> RgbImage {
-        cast(&self.scene, &[View { size: view.size.map(|side| rays * side), ..view }])
-            .remove(0)
-            .averaged(rays)
     }
 }
 
@@ -186,15 +193,15 @@ fn what_the_display_cannot_resolve_need_not_be_sampled() {
 fn matched_resolution(phantom: Phantom, most: f64) {
     let deep = Deep::new(&phantom.cube(128).unwrap());
     let Deep { array, scene, casters, .. } = &deep;
-    let (resolution, views) = (array.resolution(), deep.views());
+    let (resolution, views) = (array.resolution(), array.views(DAffine3::IDENTITY));
     let voxel_length_m = scene.parameters.voxel_length_m();
     let (near_m, far_m) = views[0].depths_m(&scene.parameters.visible_corners_world());
-    let slabs = deep.slabs(&views[0], usize::MAX);
+    let slabs = deep.slabs(&views[0], Coarseness::ALL);
     for slab in &slabs {
         let ends = [slab.depths_m.start.max(near_m), slab.depths_m.end.min(far_m)];
         let length_m = voxel_length_m * (slab.level as f64).exp2();
         let middle_m = 0.5 * (ends[0] + ends[1]);
-        assert_eq!(resolution.level(middle_m, voxel_length_m, casters.len() + 1), slab.level);
+        assert_eq!(resolution.level(middle_m, voxel_length_m, casters.len()), slab.level);
         let smallest_m = if ends[0] * ends[1] < 0.0 {
             resolution.size_m(0.0)
         } else {
@@ -208,28 +215,75 @@ fn matched_resolution(phantom: Phantom, most: f64) {
     assert!(slabs.windows(2).all(|pair| pair[0].depths_m.end == pair[1].depths_m.start));
     assert!(slabs.len() >= 3, "{slabs:?}");
     assert_eq!(RESOLVED_PIXELS, 0.5_f64.sqrt());
-    let viewer_m = array.virtual_viewer_m();
-    let eye = Eye::new(viewer_m, SIZE).unwrap();
-    let coarsest = deep.coarsest();
-    let is_seen = |index: usize| array.views_seen_from(&eye).iter().flatten().any(|seen| seen.index == index);
-    let casts = |coarsest: usize| -> Vec<Cast> {
-        let cast = |(index, view): (usize, &View)| match is_seen(index) {
-            true => deep.cast(view, coarsest),
-            false => Cast::nothing(view.size),
-        };
-        views.iter().enumerate().map(cast).collect()
-    };
-    let (full, matched) = (casts(0), casts(coarsest));
+    let eye = Eye::new(array.virtual_viewer_m(), SIZE).unwrap();
+    let coarseness = deep.coarseness(&views);
+    let (full, matched) = (deep.casts(&views, &eye, Coarseness::NONE), deep.casts(&views, &eye, coarseness));
     let samples = |casts: &[Cast]| casts.iter().map(|cast| cast.samples).sum::<u64>() as f64;
     let of_samples = samples(&matched) / samples(&full);
-    // The truth as finely as the eye sees, then blurred as its pixels are.
-    let truth = deep.fine(eye.view(array.description().screen_size_m, DAffine3::IDENTITY), 4);
-    let dssim = |casts: &[Cast]| {
-        compare(&array.seen_from(&eye, &over_black(casts)).unwrap(), &truth).unwrap().dssim()
-    };
-    let (of_full, of_matched) = (dssim(&full), dssim(&matched));
+    let screen_size_m = array.description().screen_size_m;
+    for truth in [
+        deep.truth(eye.view(screen_size_m, DAffine3::IDENTITY)),
+        deep.of_beams(|moved| eye.view(screen_size_m, moved)),
+    ] {
+        let dssim = |casts: &[Cast]| {
+            compare(&array.seen_from(&eye, &over_black(casts)).unwrap(), &truth).unwrap().dssim()
+        };
+        let (of_full, of_matched) = (dssim(&full), dssim(&matched));
+        assert!(of_matched - of_full <= 0.005, "{phantom}: {of_matched} instead of {of_full}");
+    }
     assert!(of_samples <= most, "{phantom}: {of_samples} of the samples");
-    assert!(of_matched - of_full <= 0.005, "{phantom}: {of_matched} instead of {of_full}");
+}
+
+/// A volume of 128³ bytes, each by its place.
+fn textured(value: impl FnMut([usize; 3]) -> u8) -> Volume {
+    let grid = Phantom::SheppLogan.cube(128).unwrap().grid().clone();
+    let places = (0..128 * 128 * 128).map(|index| [index % 128, index / 128 % 128, index / (128 * 128)]);
+    Volume::new(grid, Voxels::U8(places.map(value).collect())).unwrap()
+}
+
+#[test]
+fn textures_beyond_the_field_of_depth_do_not_alias() {
+    let mut state = 1_u32;
+    let noise = |_| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 24) as u8
+    };
+    let black_or_white = |is_white: bool| if is_white { 255 } else { 0 };
+    for (name, volume) in [
+        ("stripes", textured(|[x, ..]| black_or_white(x / 2 % 2 == 0))),
+        ("checks", textured(|[x, y, z]| black_or_white((x / 2 + y / 2 + z / 2) % 2 == 0))),
+        ("noise", textured(noise)),
+    ] {
+        let deep = Deep::new(&volume);
+        let array = &deep.array;
+        let behind = DAffine3::from_translation(DVec3::new(0.0, 0.0, -0.3));
+        assert!(array.resolution().field_of_depth_m(deep.scene.parameters.voxel_length_m()) < 0.2);
+        let views = array.views(behind);
+        let coarseness = deep.coarseness(&views);
+        for right_m in [-0.045, 0.0, 0.031] {
+            let eye = Eye::new(array.virtual_viewer_m() + DVec3::X * right_m, SIZE).unwrap();
+            let beams = deep.of_beams(|moved| eye.view(array.description().screen_size_m, moved * behind));
+            let seen = |coarseness| {
+                array.seen_from(&eye, &over_black(&deep.casts(&views, &eye, coarseness))).unwrap()
+            };
+            let (full, matched) = (seen(Coarseness::NONE), seen(coarseness));
+            // The display cannot show the texture, so that what differs from place to place is not there.
+            let [of_full, of_matched, of_beams] = [&full, &matched, &beams].map(contrast);
+            let off = |picture| compare(picture, &beams).unwrap().dssim();
+            assert!(of_full > 1.7 * of_beams, "{name}: {of_full} is that of no aliasing, {of_beams}");
+            assert!(of_matched < 1.2 * of_beams, "{name}: {of_matched} instead of {of_beams}");
+            assert!(off(&matched) < 0.6 * off(&full), "{name}: {} and {}", off(&matched), off(&full));
+        }
+    }
+}
+
+/// Standard deviation of green over its mean, in the middle of a picture.
+fn contrast(picture: &RgbImage) -> f64 {
+    let middle = picture.cut([30, 20], [20, 20]);
+    let levels: Vec<f64> = middle.rgb.iter().map(|rgb| f64::from(rgb[1])).collect();
+    let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+    let variance = levels.iter().map(|level| (level - mean).powi(2)).sum::<f64>() / levels.len() as f64;
+    variance.sqrt() / mean
 }
 
 #[test]
@@ -237,7 +291,7 @@ fn a_volume_that_is_scaled_to_its_display_is_resolved_as_one_of_that_size() {
     let volume = Phantom::Beetle.cube(64).unwrap();
     let settings = Settings::new(volume.full_window(), soft());
     let array = display(24, 2.4, SIZE);
-    let resolved = LevelOfDetail::Resolved { resolution: array.resolution(), coarsest: usize::MAX };
+    let resolved = LevelOfDetail::Resolved { resolution: array.resolution(), coarseness: Coarseness::ALL };
     let slabs = |side_m: f64, scale: f64| {
         let scene = Scene::new(&volume, side_m, &settings);
         let view = array.views(DAffine3::from_scale(DVec3::splat(scale)))[3];

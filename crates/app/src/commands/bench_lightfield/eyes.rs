@@ -30,6 +30,8 @@ pub(super) struct Sight {
     pub(super) eye_m: DVec3,
     /// From what there would be to see.
     pub(super) dssim: f64,
+    /// From the most that the display's beams can show of that.
+    dssim_of_beams: f64,
 }
 
 /// How far eyes go up and down, metres.
@@ -40,6 +42,9 @@ const SIDEWAYS_M: f64 = 0.2;
 
 /// How much further away from the screen they go than the virtual viewer is, and by how much nearer, as factors.
 const AWAY: f64 = 2.0;
+
+/// Rays of each beam of what the display can show at most.
+const BEAM_RAYS: u32 = 16;
 
 /// Places on a walk from its middle to either end.
 const STEPS: i32 = 5;
@@ -92,11 +97,16 @@ pub(super) fn sights(
     for walk in Walk::ALL {
         for eye_m in walk.places_m(array.virtual_viewer_m()) {
             let eye = Eye::new(eye_m, description.image_size_px).map_err(Failure::input)?;
-            let truth = engine.truth(shot, &eye.view(description.screen_size_m, display_from_world))?;
+            let view = |moved| eye.view(description.screen_size_m, moved * display_from_world);
+            let truth = engine.truth(shot, &view(DAffine3::IDENTITY))?;
+            let beams = engine.mean(shot, array.resolution().beam(BEAM_RAYS).map(view))?;
             for (images, sights) in frames.iter().zip(&mut sights) {
                 let seen = array.seen_from(&eye, images).map_err(Failure::input)?;
-                let dssim = compare(&seen, &truth).map_err(Failure::input)?.dssim();
-                sights.push(Sight { walk, eye_m, dssim });
+                let [dssim, dssim_of_beams] =
+                    [&truth, &beams].map(|truth| compare(&seen, truth).map(|quality| quality.dssim()));
+                let dssim = dssim.map_err(Failure::input)?;
+                let dssim_of_beams = dssim_of_beams.map_err(Failure::input)?;
+                sights.push(Sight { walk, eye_m, dssim, dssim_of_beams });
             }
             bar.advance();
         }
@@ -106,27 +116,37 @@ pub(super) fn sights(
 
 impl Sight {
     pub(super) fn to_json(self) -> Value {
-        json!({ "walk": self.walk.name(), "eye_m": self.eye_m.to_array(), "dssim": self.dssim })
+        json!({ "walk": self.walk.name(), "eye_m": self.eye_m.to_array(), "dssim": self.dssim, "dssim_of_beams": self.dssim_of_beams })
     }
 }
 
 /// The error where each walk begins, at the virtual viewer's place in its middle, and where it ends.
 pub(super) fn to_table(frames: &[FullFrame]) -> String {
     let mut lines = vec![format!(
-        "{:<14} {:<10} {:<8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}",
-        "volume", "resolution", "eye goes", "from cm", "by cm", "to cm", "DSSIM there", "there", "there"
+        "{:<14} {:<10} {:<8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10} {:>10}",
+        "volume",
+        "resolution",
+        "eye goes",
+        "from cm",
+        "by cm",
+        "to cm",
+        "DSSIM there",
+        "there",
+        "of beams",
+        "there"
     )];
     for (frame, walk) in frames.iter().flat_map(|frame| Walk::ALL.map(|walk| (frame, walk))) {
         let sights: Vec<&Sight> = frame.on(walk).collect();
         let [from, by, to] = [0, STEPS as usize, 2 * STEPS as usize].map(|place| sights[place]);
         let [from_cm, by_cm, to_cm] = [from, by, to].map(|sight| walk.along_cm(sight.eye_m));
         lines.push(format!(
-            "{:<14} {:<10} {:<8} {from_cm:>8.1} {by_cm:>8.1} {to_cm:>8.1} {:>11.5} {:>10.5} {:>10.5}",
+            "{:<14} {:<10} {:<8} {from_cm:>8.1} {by_cm:>8.1} {to_cm:>8.1} {:>11.5} {:>10.5} {:>10.5} {:>10.5}",
             frame.volume,
             frame.resolution,
             walk.name(),
             from.dssim,
             by.dssim,
+            by.dssim_of_beams,
             to.dssim,
         ));
     }

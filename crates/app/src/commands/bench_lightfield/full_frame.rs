@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
 use wheatstone_core::cast::CastParameters;
 use wheatstone_core::image::RgbImage;
-use wheatstone_core::lightfield::ProjectorArray;
+use wheatstone_core::lightfield::{Coarseness, ProjectorArray};
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{StorageKind, Volume};
 use wheatstone_render::Gpu;
@@ -34,8 +34,7 @@ pub(super) struct FullFrame {
     pub(super) projectors: usize,
     pub(super) size: [u32; 2],
     pub(super) resolution: &'static str,
-    /// The longest steps over those at full detail.
-    longest_step: usize,
+    coarseness: Coarseness,
     ms: f64,
     samples: u64,
     /// Over those at full resolution.
@@ -47,7 +46,7 @@ pub(super) struct FullFrame {
 struct Casts {
     resolution: &'static str,
     shot: Shot,
-    longest_step: usize,
+    coarseness: Coarseness,
     samples: u64,
     times_ms: Vec<f64>,
 }
@@ -67,19 +66,18 @@ pub(super) fn measure(stage: &Stage<'_>) -> Result<Vec<FullFrame>, Failure> {
     let mut engine = Engine::gpu(Gpu::open_best()?, stage.volume, storage)?;
     engine.add_levels(&coarser)?;
     let full = engine.prepare(stage.parameters, stage.skipping)?;
-    let of = |resolution, shot, longest_step| Casts {
+    let of = |resolution, ResolvedShot { shot, coarseness }| Casts {
         resolution,
         shot,
-        longest_step,
+        coarseness,
         samples: 0,
         times_ms: Vec::new(),
     };
-    let mut casts = vec![of("full", full, 1)];
+    let mut casts = vec![of("full", ResolvedShot { shot: full, coarseness: Coarseness::NONE })];
     if stage.has_levels {
         let resolution = stage.array.resolution();
-        let ResolvedShot { shot, longest_step } =
-            engine.prepare_resolved(stage.parameters, stage.skipping, resolution, &views)?;
-        casts.push(of("matched", shot, longest_step));
+        let resolved = engine.prepare_resolved(stage.parameters, stage.skipping, resolution, &views)?;
+        casts.push(of("matched", resolved));
     }
     let title = format!("{}, {} projectors", stage.name, views.len());
     let bar = Bar::new(title, u64::from(stage.rounds) + 1);
@@ -108,7 +106,7 @@ pub(super) fn measure(stage: &Stage<'_>) -> Result<Vec<FullFrame>, Failure> {
         projectors: views.len(),
         size: description.image_size_px,
         resolution: casts.resolution,
-        longest_step: casts.longest_step,
+        coarseness: casts.coarseness,
         ms: median(&casts.times_ms),
         samples: casts.samples,
         of_full: casts.samples as f64 / samples_in_full.max(1) as f64,
@@ -145,7 +143,8 @@ impl FullFrame {
             "projectors": self.projectors,
             "size": self.size,
             "resolution": self.resolution,
-            "longest_step": self.longest_step,
+            "longest_step": self.coarseness.step_ratio(),
+            "voxels_per_step": self.coarseness.voxels_per_step(),
             "ms_per_frame": self.ms,
             "mrays_per_s": self.mrays_per_s(),
             "samples": self.samples,
@@ -157,17 +156,27 @@ impl FullFrame {
 
 pub(super) fn to_table(frames: &[FullFrame]) -> String {
     let mut lines = vec![format!(
-        "{:<14} {:>10} {:>9} {:<10} {:>4} {:>10} {:>7} {:>10} {:>8}",
-        "volume", "projectors", "size", "resolution", "step", "ms", "Mray/s", "M samples", "of full"
+        "{:<14} {:>10} {:>9} {:<10} {:>4} {:>6} {:>10} {:>7} {:>10} {:>8}",
+        "volume",
+        "projectors",
+        "size",
+        "resolution",
+        "step",
+        "voxels",
+        "ms",
+        "Mray/s",
+        "M samples",
+        "of full"
     )];
     for frame in frames {
         lines.push(format!(
-            "{:<14} {:>10} {:>9} {:<10} {:>4} {:>10.1} {:>7.1} {:>10.2} {:>8.3}",
+            "{:<14} {:>10} {:>9} {:<10} {:>4} {:>6} {:>10.1} {:>7.1} {:>10.2} {:>8.3}",
             frame.volume,
             frame.projectors,
             format!("{}x{}", frame.size[0], frame.size[1]),
             frame.resolution,
-            frame.longest_step,
+            frame.coarseness.step_ratio(),
+            frame.coarseness.voxels_per_step(),
             frame.ms,
             frame.mrays_per_s(),
             frame.samples as f64 / 1e6,
