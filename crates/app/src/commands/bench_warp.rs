@@ -1,6 +1,7 @@
 //! `bench warp`: how far what a display shows is from what its eyes should see, by the protocol of VR §6.2.
 
 mod aim;
+mod cells;
 mod charts;
 mod costs;
 mod live;
@@ -23,6 +24,7 @@ use crate::skipping::{SkipArgs, SkipName};
 use crate::spec;
 use crate::transfer_spec::{self, TransferSpec};
 use aim::AimName;
+use cells::Cells;
 use clap::{Args, ValueEnum};
 use costs::{Costs, Timed};
 use live::Keeping;
@@ -47,9 +49,9 @@ const RADIUS_M: f64 = 0.866;
 /// Error of what a head-mounted display shows while the head moves, with and without warping.
 ///
 /// Simulated time: a head turns about its neck, moves sideways, or does both, eased by a cosine, within one second. Pictures are cast
-/// a few cells per refresh, as many as fit in what is left of it by measured costs that scatter by 30 %; at each refresh
+/// a few cells per refresh, as many as fit in what is left of it by costs that go with their samples and scatter by 30 %; at each refresh
 /// the newest complete picture is warped to where the eyes are and compared with a true render from there. Results are the same on
-/// every machine but for the times of warps.
+/// every machine within rounding, but for the times of warps.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     wheatstone bench warp bonsai.nii.gz --up A --plot plots\n  \
@@ -236,6 +238,7 @@ impl WarpBenchArgs {
         let extent = Extent { turn_rad: self.turn_deg.to_radians(), sideways_m: self.sideways };
         let warps = if self.warps.is_empty() { WarpName::value_variants() } else { &self.warps };
         let layering = warps.contains(&WarpName::Volumetric).then_some(layering);
+        let cells = Cells::of(&mut engine, shot, &middle, frustum)?;
         let mut camera = Camera::new(&mut engine, shot, (&volume, storage, &parameters), middle, layering)?;
         let timed = Timed { volume: &name, shots, middle: &middle, extent, warps };
         measured.costs.push(costs::measure(&timed, &mut camera)?);
@@ -243,7 +246,7 @@ impl WarpBenchArgs {
             let path = motion.about(Pose::of(&middle), extent)?;
             let mut display = pace.display;
             let refreshes = match self.live {
-                None => timeline::refreshes(&path, self.aim, pace, self.size)?,
+                None => timeline::refreshes(&path, self.aim, pace, &cells)?,
                 Some(refreshes) => {
                     let mut engine = camera.engine.live(shot)?;
                     let pace = live::fitting_pace(&mut engine, &path, &middle, refreshes, pace.reserve_s)?;

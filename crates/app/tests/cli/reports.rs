@@ -426,6 +426,30 @@ fn bench_warp_traces_every_warp() {
 }
 
 #[test]
+fn warps_of_the_brain_are_in_the_order_of_what_they_know() {
+    if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
+        return;
+    }
+    let bench = Bench::new();
+    let brain = repository_file("assets/mni152_t1_1mm.nii.gz");
+    let small = ["--size", "128x128", "--fov-deg", "40", "--motions", "translation", "--json"];
+    let run = bench.run(&[&["bench", "warp", brain.to_str().unwrap()][..], &small].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let json = run.json();
+    let rows = json["rows"].as_array().unwrap();
+    let names: Vec<_> = rows.iter().map(|row| row["warp"].as_str().unwrap()).collect();
+    assert_eq!(names, ["none", "quad", "grid", "volumetric"]);
+    let of = |key: &str| -> Vec<f64> { rows.iter().map(|row| row[key].as_f64().unwrap()).collect() };
+    let means = of("dssim_mean");
+    assert!(means.windows(2).all(|pair| pair[1] < 0.97 * pair[0]), "{means:?}");
+    assert!(of("dssim_worst")[3] <= 0.052, "{:?}", of("dssim_worst"));
+    // The thirty per cent by which cells scatter, and cells of unlike cost, make one refresh in a hundred late at most.
+    assert!(
+        of("missed").iter().all(|&missed| missed <= 0.01 * rows[0]["trace"].as_array().unwrap().len() as f64)
+    );
+}
+
+#[test]
 fn bench_warp_casts_live() {
     if std::env::var_os("WHEATSTONE_SKIP_GPU_TESTS").is_some() {
         return;

@@ -25,7 +25,7 @@ const SHORTEST_PIECE_S: f64 = 0.004;
 const SPARE_PICTURES: u64 = 2;
 
 /// Share of refreshes that may be late on software Vulkan, which shares the processor with all that runs besides.
-const MISSED_SHARE_OF_SOFTWARE: f64 = 0.02;
+const MISSED_SHARE_OF_SOFTWARE: f64 = 0.008;
 
 /// The pictures of a rig's views, cast together a few cells per refresh. Whatever changes, and however often, the front
 /// picture is whole: of all views, from one pose, with one volume's settings.

@@ -1,15 +1,10 @@
 //! What is shown at which refresh, in simulated time.
 
 use super::aim::{Aim, AimName};
+use super::cells::Cells;
 use crate::failure::Failure;
-use wheatstone_core::budget::{CastSchedule, CellGrid, Predictor, ViewRequest};
+use wheatstone_core::budget::{CastSchedule, Predictor, ViewRequest};
 use wheatstone_core::head::{Display, HeadMotion, Pose};
-
-/// Cells along the longer side of a picture: some hundreds in all, so that a refresh holds many of a view that takes several.
-const CELLS_PER_SIDE: u32 = 24;
-
-/// Sides of cells are multiples of this, pixels: workgroups stay whole.
-const CELL_STEP_PX: u32 = 8;
 
 /// Share by which what a cell takes differs from one cast to the next.
 const NOISE: f64 = 0.3;
@@ -44,22 +39,20 @@ pub(super) struct Refresh {
     pub(super) is_missed: bool,
 }
 
-/// The refreshes of a motion, from the one at which it begins to the one after it has ended, for pictures of a size in pixels. All
-/// before is rest. A picture is cast for the pose at which it will be shown first, if nothing takes longer than it is expected
+/// The refreshes of a motion, from the one at which it begins to the one after it has ended, for pictures of some cells. All before is
+/// rest. A picture is cast for the pose at which it will be shown first, if nothing takes longer than it is expected
 /// to, as far as that pose is known.
 pub(super) fn refreshes(
     motion: &HeadMotion,
     aim: AimName,
     pace: &Pace,
-    size: [u32; 2],
+    cells: &Cells,
 ) -> Result<Vec<Refresh>, Failure> {
     let mut aim = Aim::new(aim, motion);
-    let cell_side_px = size[0].max(size[1]).div_ceil(CELLS_PER_SIDE).next_multiple_of(CELL_STEP_PX);
-    let grid = CellGrid::new(size, cell_side_px).map_err(Failure::input)?;
+    let grid = cells.grid;
     let period_s = pace.display.period_s();
     let available_s = pace.available_s();
     let refreshes_of_cast = (pace.render_s / available_s).ceil();
-    let cell_s = pace.render_s / grid.cells() as f64;
     let mut random = fastrand::Rng::with_seed(1);
     let request = |pose| ViewRequest::new(pose, grid, 1.0).map_err(Failure::input);
     let mut schedule = CastSchedule::new(request(motion.eyes_at(0.0))?, Predictor::Corrected);
@@ -77,7 +70,8 @@ pub(super) fn refreshes(
         let mut completes = false;
         if let Some(batch) = schedule.plan(available_s) {
             let mut noise = || 1.0 + NOISE * (2.0 * random.f64() - 1.0);
-            let taken_s: Vec<f64> = batch.cells().iter().map(|_| cell_s * noise()).collect();
+            let taken_s: Vec<f64> =
+                batch.cells().iter().map(|&cell| pace.render_s * cells.share(cell) * noise()).collect();
             is_missed = taken_s.iter().sum::<f64>() > available_s;
             completes = batch.completes_view();
             schedule.record(&batch, &taken_s).map_err(Failure::input)?;
@@ -108,7 +102,7 @@ mod tests {
 
     fn timeline(aim: AimName, render_s: f64) -> Vec<Refresh> {
         let pace = Pace { display: Display::default(), render_s, reserve_s: 0.002 };
-        refreshes(&motion(), aim, &pace, [256, 192]).unwrap()
+        refreshes(&motion(), aim, &pace, &Cells::growing([256, 192])).unwrap()
     }
 
     #[test]
