@@ -6,6 +6,9 @@ use crate::failure::Failure;
 use wheatstone_core::budget::{CastSchedule, Predictor, ViewRequest};
 use wheatstone_core::head::{Display, HeadMotion, Pose};
 
+/// Refreshes before the motion, while the head goes to and fro: so many that it is known by then how far what cells take is off.
+const REFRESHES_BEFORE: f64 = 720.0;
+
 /// Share by which what a cell takes differs from one cast to the next.
 const NOISE: f64 = 0.3;
 
@@ -39,8 +42,7 @@ pub(super) struct Refresh {
     pub(super) is_missed: bool,
 }
 
-/// The refreshes of a motion, from the one at which it begins to the one after it has ended, for pictures of some cells. All before is
-/// rest. A picture is cast for the pose at which it will be shown first, if nothing takes longer than it is expected
+/// The refreshes of a motion, from the one at which it begins to the one after it has ended, for pictures of some cells. A picture is cast for the pose at which it will be shown first, if nothing takes longer than it is expected
 /// to, as far as that pose is known.
 pub(super) fn refreshes(
     motion: &HeadMotion,
@@ -58,11 +60,7 @@ pub(super) fn refreshes(
     let mut schedule = CastSchedule::new(request(motion.eyes_at(0.0))?, Predictor::Corrected);
     let mut shown = Vec::new();
     let mut picture = 0;
-    // Two pictures of rest, the first of which begins with a cell and doubles from refresh to refresh: one is shown when the motion
-    // begins.
-    let ramp = f64::from(grid.cells().ilog2());
-    let warm_up = -2.0 * refreshes_of_cast - ramp - 2.0;
-    let mut refresh = warm_up;
+    let mut refresh = -REFRESHES_BEFORE;
     while (refresh - 1.0) * period_s <= motion.duration_s() {
         let begins_s = refresh * period_s;
         schedule.aim(request(aim.eyes_at(begins_s + refreshes_of_cast * period_s, begins_s)?)?);
