@@ -238,7 +238,7 @@ impl WarpBenchArgs {
         let extent = Extent { turn_rad: self.turn_deg.to_radians(), sideways_m: self.sideways };
         let warps = if self.warps.is_empty() { WarpName::value_variants() } else { &self.warps };
         let layering = warps.contains(&WarpName::Volumetric).then_some(layering);
-        let cells = Cells::of(&mut engine, shot, &middle, frustum)?;
+        let cells = Cells::of(&mut engine, shot, &middle)?;
         let mut camera = Camera::new(&mut engine, shot, (&volume, storage, &parameters), middle, layering)?;
         let timed = Timed { volume: &name, shots, middle: &middle, extent, warps };
         measured.costs.push(costs::measure(&timed, &mut camera)?);

@@ -216,9 +216,8 @@ impl ProjectorsArgs {
                 ResolvedShot { shot: engine.prepare(parameters, skipping)?, coarseness: Coarseness::NONE }
             }
             ResolutionName::Matched => {
-                let first = stage.stand.displays_from_world().next().unwrap_or_default();
-                let views = stage.array.views(first);
-                engine.prepare_resolved(parameters, skipping, stage.array.resolution(), &views)?
+                let displays_from_world: Vec<_> = stage.stand.displays_from_world().collect();
+                engine.prepare_resolved(parameters, skipping, &stage.array, &displays_from_world)?
             }
         };
         let mut made = Made {

@@ -115,9 +115,9 @@ fn the_viewer_sees_the_volume() {
 #[test]
 fn frames_have_the_ids_of_their_projectors_and_what_is_resolved_is_matched() {
     let bench = bench();
-    let run = bench.run(&["phantom", "beetle", "--size", "64", "-o", "o.nrrd"]);
+    let run = bench.run(&["phantom", "snake", "--size", "64", "-o", "o.nrrd"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    let deep = ["--tf", "viridis", "--volume-size", "0.2", "--skip", "none"];
+    let deep = ["--tf", "ramp:0..1", "--volume-size", "0.1", "--skip", "none"];
     let matched = projectors(&bench, "m.png", &deep);
     let full = projectors(&bench, "f.png", &[&deep[..], &["--resolution", "full"]].concat());
     assert_eq!((&matched["resolution"], &full["resolution"]), (&json!("matched"), &json!("full")));
@@ -267,4 +267,27 @@ fn the_gpu_makes_the_same_frames() {
         let apart = dssim(&bench, &format!("cpu{frame}"), &format!("gpu{frame}"));
         assert!(apart <= 0.002, "{frame}: {apart}");
     }
+}
+
+#[test]
+fn how_coarsely_frames_are_cast_does_not_depend_on_a_projector_beside_the_volume() {
+    let bench = bench();
+    let run = bench.run(&["phantom", "snake", "--size", "64", "-o", "o.nrrd"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let flags = ["--volume-size", "0.1", "--resolution", "matched", "--tf", "ramp:0..1", "--skip", "none"];
+    let beside = json!({
+        "id": 7,
+        "emitter_m": [0.3, 0.0, -0.5],
+        "image": { "left_m": 0.08, "right_m": 0.1, "down_m": -0.075, "up_m": 0.075 },
+    });
+    let steps: Vec<Value> = [12, 6]
+        .map(|place| {
+            let mut array = array();
+            array["projectors"].as_array_mut().unwrap().insert(place, beside.clone());
+            std::fs::write(bench.path("array.json"), array.to_string()).unwrap();
+            let json = projectors(&bench, "a.png", &flags);
+            json!([json["longest_step"], json["voxels_per_step"]])
+        })
+        .into();
+    assert_eq!(steps, [json!([2, 1]), json!([2, 1])]);
 }

@@ -20,4 +20,4 @@ pub use error::DisplayError;
 pub use lenticular::Lenticular;
 pub use projectors::ProjectorArray;
 pub use quilt::QuiltDisplay;
-pub use resolution::{Coarseness, MOST_LOST, RESOLVED_PIXELS, Resolution, coarsest_alike};
+pub use resolution::{Coarseness, MOST_LOST, RESOLVED_PIXELS, Resolution, Tried, coarsest_alike};

@@ -56,8 +56,8 @@ impl Resolution {
     /// beam. So many of them, spread evenly (Hammersley points), as maps of display space into itself: what such a map moves to the ray
     /// through the middle is what the other ray meets. The mean of the pictures of a world that is moved by each of them is what the
     /// display shows at best, to eyes and of its projectors.
-    pub fn beam(&self, rays: u32) -> impl Iterator<Item = DAffine3> {
-        let Self { pixel_size_m, beam_angle_rad } = *self;
+    pub fn beam(self, rays: u32) -> impl Iterator<Item = DAffine3> {
+        let Self { pixel_size_m, beam_angle_rad } = self;
         (0..rays).map(move |ray| {
             let across = |share: f64| pixel_size_m * (share - 0.5);
             let per_metre =
@@ -118,30 +118,51 @@ impl Coarseness {
     }
 }
 
-/// DSSIM by which longer steps may take a projector's picture further from the truth. An eye sees strips of such pictures, so that what
-/// it sees is then further off by about as much.
+/// What came of casting so coarsely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tried {
+    /// How far each of some pictures is from the most that beams can show of it ([`Resolution::beam`]).
+    pub dssims: Vec<f64>,
+    /// Samples that were taken for all of them.
+    pub samples: u64,
+}
+
+/// DSSIM by which coarser casts may take any picture further from the truth than those in full.
 pub const MOST_LOST: f64 = 0.0035;
 
-/// The coarsest way, up to a longest step, by which a projector's picture is about as near to the truth as in full, or nearer: thin things
-/// may bear no longer steps, whatever the display resolves, if the transfer function makes much of them.
+impl Tried {
+    fn is_alike(&self, full: &Self) -> bool {
+        self.dssims.iter().zip(&full.dssims).all(|(off, in_full)| *off <= in_full + MOST_LOST)
+    }
+
+    fn is_nearer_than(&self, other: &Self) -> bool {
+        self.dssims.iter().sum::<f64>() < other.dssims.iter().sum::<f64>()
+    }
+}
+
+/// The coarsest way, up to a longest step, by which pictures are about as near to the truth as in full, or nearer, if it takes fewer
+/// samples: thin things may bear no longer steps, whatever the display resolves, if the transfer function makes much of them.
 ///
-/// `off` tells how far the picture that is cast so coarsely is from what beams can show ([`Resolution::beam`]): their DSSIM.
+/// `cast` makes pictures of what there is to see so coarsely, of the volume alone: what is empty is never wrong.
 ///
 /// # Errors
-/// Those of `off`.
+/// Those of `cast`.
 pub fn coarsest_alike<E>(
     longest_step: usize,
-    mut off: impl FnMut(Coarseness) -> Result<f64, E>,
+    mut cast: impl FnMut(Coarseness) -> Result<Tried, E>,
 ) -> Result<Coarseness, E> {
-    let bearable = off(Coarseness::NONE)? + MOST_LOST;
-    let mut coarsest = Coarseness::NONE;
+    let full = cast(Coarseness::NONE)?;
+    let (mut coarsest, mut samples) = (Coarseness::NONE, full.samples);
     for step in 1..=longest_step {
         let [all, half] = Coarseness::of_step(step);
-        let (off_all, off_half) = (off(all)?, off(half)?);
-        if off_all.min(off_half) > bearable {
+        let (of_all, of_half) = (cast(all)?, cast(half)?);
+        let (nearer, tried) = if of_half.is_nearer_than(&of_all) { (half, of_half) } else { (all, of_all) };
+        if !tried.is_alike(&full) {
             break;
         }
-        coarsest = if off_all <= off_half { all } else { half };
+        if tried.samples < samples {
+            (coarsest, samples) = (nearer, tried.samples);
+        }
     }
     Ok(coarsest)
 }
@@ -149,6 +170,7 @@ pub fn coarsest_alike<E>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::convert::Infallible;
 
     #[test]
     fn rays_of_a_beam_are_spread_over_what_the_display_resolves() {
@@ -172,10 +194,28 @@ mod tests {
     }
 
     #[test]
+    fn coarser_casts_have_to_save_samples() {
+        let tried = |samples: fn(usize) -> u64| {
+            let tried = |coarseness: Coarseness| Tried {
+                dssims: vec![0.1],
+                samples: samples(coarseness.longest_step),
+            };
+            coarsest_alike(3, |coarseness| Ok::<_, Infallible>(tried(coarseness))).unwrap().longest_step
+        };
+        assert_eq!(tried(|step| 100 + step as u64), 0);
+        assert_eq!(tried(|step| 100 - step as u64), 3);
+        assert_eq!(tried(|step| [100, 110, 90, 95][step]), 2);
+    }
+
+    #[test]
     fn what_bears_no_longer_steps_is_cast_in_full_and_of_two_ways_the_nearer_one_is_taken() {
         let of = |longest_step, finer_voxels| Coarseness { longest_step, finer_voxels };
         let alike = |off: fn(Coarseness) -> f64| {
-            coarsest_alike(3, |coarseness| Ok::<_, std::convert::Infallible>(off(coarseness))).unwrap()
+            let tried = |coarseness: Coarseness| Tried {
+                dssims: vec![0.2, off(coarseness)],
+                samples: 100 - coarseness.longest_step as u64,
+            };
+            coarsest_alike(3, |coarseness| Ok::<_, Infallible>(tried(coarseness))).unwrap()
         };
         assert_eq!(alike(|coarseness| coarseness.longest_step as f64), Coarseness::NONE);
         assert_eq!(alike(|_| 0.1), of(3, 0));

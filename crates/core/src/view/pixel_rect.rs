@@ -1,6 +1,6 @@
 //! The part of a picture that a body can cover.
 
-use super::{Projection, View};
+use super::{Frustum, Mcop, OrthographicBox, Projection, View};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
@@ -89,6 +89,34 @@ pub(crate) fn whole_pixels(positions: impl Iterator<Item = f64>) -> Range<f64> {
 }
 
 impl View {
+    /// Some of its pixels as a view of their own.
+    #[must_use]
+    pub fn part(&self, rect: &PixelRect) -> Self {
+        let [width, height] = self.size.map(f64::from);
+        let window = |[left, right, down, up]: [f64; 4]| {
+            let across = |column: u32| left + (right - left) * f64::from(column) / width;
+            let downwards = |row: u32| up + (down - up) * f64::from(row) / height;
+            let PixelRect { columns, rows } = rect;
+            [across(columns.start), across(columns.end), downwards(rows.end), downwards(rows.start)]
+        };
+        let projection = match self.projection {
+            Projection::Perspective(f) => {
+                let [left, right, down, up] = window([f.left, f.right, f.down, f.up]);
+                Projection::Perspective(Frustum { left, right, down, up, ..f })
+            }
+            Projection::Orthographic(o) => {
+                let [left_m, right_m, down_m, up_m] = window([o.left_m, o.right_m, o.down_m, o.up_m]);
+                Projection::Orthographic(OrthographicBox { left_m, right_m, down_m, up_m, ..o })
+            }
+            Projection::Mcop(m) => {
+                let [left_m, right_m, down_m, up_m] = window([m.left_m, m.right_m, m.down_m, m.up_m]);
+                Projection::Mcop(Mcop { left_m, right_m, down_m, up_m, ..m })
+            }
+        };
+        let size = [&rect.columns, &rect.rows].map(|range| range.len() as u32);
+        Self { projection, size, ..*self }
+    }
+
     /// The nearest and the furthest depth of some points in world space, metres; negative behind the eye.
     pub fn depths_m(&self, points_world: &[DVec3]) -> (f64, f64) {
         points_world
@@ -126,11 +154,45 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::{Frustum, Orbit, OrthographicBox, RayField};
+    use crate::view::{Orbit, RayField};
     use glam::DAffine3;
     use proptest::prelude::*;
 
     const SIZE: [u32; 2] = [90, 60];
+
+    #[test]
+    fn a_part_sees_what_the_view_sees_there() {
+        let rect = PixelRect { columns: 20..70, rows: 7..31 };
+        let frustum = Frustum { left: -0.7, right: 0.4, down: -0.3, up: 0.6, near_m: 0.1, far_m: 9.0 };
+        let orthographic =
+            OrthographicBox { left_m: -0.7, right_m: 0.4, down_m: -0.3, up_m: 0.6, near_m: 0.1, far_m: 9.0 };
+        let mcop = Mcop {
+            emitter_x_m: 0.1,
+            emitter_z_m: -1.0,
+            viewer_y_m: 0.2,
+            viewer_z_m: 0.8,
+            left_m: 0.5,
+            right_m: -0.4,
+            down_m: -0.3,
+            up_m: 0.2,
+            near_m: -0.7,
+            far_m: 0.9,
+        };
+        let projections = [
+            Projection::Perspective(frustum),
+            Projection::Orthographic(orthographic),
+            Projection::Mcop(mcop),
+        ];
+        for projection in projections {
+            let view =
+                View { view_from_world: DAffine3::IDENTITY, projection, size: SIZE, shaded_from: None };
+            let part = view.part(&rect);
+            assert_eq!(part.size, [50, 24]);
+            let point = DVec3::new(0.03, -0.05, -0.4);
+            let [at, in_part] = [view, part].map(|view| view.pixel_position(point).unwrap());
+            assert!((at - DVec2::new(20.0, 7.0) - in_part).length() < 1e-9, "{at} {in_part}");
+        }
+    }
 
     fn cube(half: f64) -> impl Iterator<Item = DVec3> {
         (0..8).map(move |i| DVec3::from([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -half } else { half })))

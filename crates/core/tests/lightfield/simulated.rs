@@ -7,7 +7,7 @@ use wheatstone_core::image::RgbImage;
 use wheatstone_core::lightfield::quilt::{Model, Sampling};
 use wheatstone_core::lightfield::simulator::Eye;
 use wheatstone_core::lightfield::{
-    Coarseness, Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_PIXELS, coarsest_alike,
+    Coarseness, Lenticular, ProjectorArray, QuiltDisplay, RESOLVED_PIXELS, Tried, coarsest_alike,
 };
 use wheatstone_core::lit_sphere::Style;
 use wheatstone_core::metrics::{SizeMismatch, compare};
@@ -15,7 +15,7 @@ use wheatstone_core::phantom::Phantom;
 use wheatstone_core::reference::{Aids, Cast, Caster};
 use wheatstone_core::scene::{Settings, Shading};
 use wheatstone_core::transfer::{ColorPoint, OpacityPoint, TransferFunction};
-use wheatstone_core::view::View;
+use wheatstone_core::view::{PixelRect, View};
 use wheatstone_core::volume::{Volume, Voxels};
 
 const SIZE: [u32; 2] = [80, 60];
@@ -83,6 +83,25 @@ fn at_the_virtual_viewers_place_the_world_is_seen_and_elsewhere_ever_less_so() {
         assert!(errors[7] > 3.0 * errors[0], "{errors:?}");
         // It grows, and without jumps.
         assert!(steps.iter().all(|&step| step > -0.0003 && step < 0.003), "{errors:?}");
+    }
+}
+
+#[test]
+fn an_eye_sees_the_same_of_the_columns_that_it_sees_alone() {
+    let (scene, array) = (scene(), display(24, 2.4, [40, 30]));
+    let images = cast(&scene, &array.views(DAffine3::IDENTITY));
+    for eye_m in [DVec3::new(0.05, 0.0, 0.6), DVec3::new(-0.3, 0.1, 0.4), DVec3::new(3.0, 0.0, 0.2)] {
+        let eye = Eye::new(eye_m, SIZE).unwrap();
+        let seen = array.parts_seen_from(&eye);
+        let parts: Vec<RgbImage> = images
+            .iter()
+            .zip(seen.columns())
+            .map(|(image, columns)| image.cut([columns.start, 0], [columns.len() as u32, 30]))
+            .collect();
+        let of_all: usize = seen.columns().iter().map(ExactSizeIterator::len).sum();
+        assert!(of_all < 24 * 40 / 3, "{of_all} columns");
+        assert_eq!(seen.picture(&parts), array.seen_from(&eye, &images).unwrap());
+        assert!(seen.lit_columns().end <= SIZE[0]);
     }
 }
 
@@ -159,15 +178,25 @@ impl Deep {
         views.iter().enumerate().map(cast).collect()
     }
 
-    /// What the projector in the middle bears.
-    fn coarseness(&self, views: &[View]) -> Coarseness {
-        let view = views[12];
-        let truth = self.of_beams(|moved| View { view_from_world: moved * view.view_from_world, ..view });
-        let slabs = self.slabs(&view, Coarseness::ALL);
+    /// What the virtual viewer's picture bears, where the volume is in it.
+    fn coarseness(&self, display_from_world: DAffine3) -> Coarseness {
+        let eye = Eye::new(self.array.virtual_viewer_m(), SIZE).unwrap();
+        let world = |moved| eye.view(self.array.description().screen_size_m, moved * display_from_world);
+        let rect =
+            PixelRect::around(&world(DAffine3::IDENTITY), self.scene.parameters.visible_corners_world());
+        let cut = |picture: &RgbImage| {
+            let size = [rect.columns.len() as u32, rect.rows.len() as u32];
+            picture.cut([rect.columns.start, rect.rows.start], size)
+        };
+        let truth = cut(&self.of_beams(world));
+        let views = self.array.views(display_from_world);
+        let slabs = self.slabs(&views[12], Coarseness::ALL);
         let longest_step = slabs.iter().map(|slab| slab.level).max().unwrap();
         coarsest_alike(longest_step, |coarseness| {
-            let picture = over_black(&[self.cast(&view, coarseness)]).remove(0);
-            Ok::<_, SizeMismatch>(compare(&picture, &truth)?.dssim())
+            let casts = self.casts(&views, &eye, coarseness);
+            let seen = cut(&self.array.seen_from(&eye, &over_black(&casts)).unwrap());
+            let samples = casts.iter().map(|cast| cast.samples).sum();
+            Ok::<_, SizeMismatch>(Tried { dssims: vec![compare(&seen, &truth)?.dssim()], samples })
         })
         .unwrap()
     }
@@ -216,7 +245,7 @@ fn matched_resolution(phantom: Phantom, most: f64) {
     assert!(slabs.len() >= 3, "{slabs:?}");
     assert_eq!(RESOLVED_PIXELS, 0.5_f64.sqrt());
     let eye = Eye::new(array.virtual_viewer_m(), SIZE).unwrap();
-    let coarseness = deep.coarseness(&views);
+    let coarseness = deep.coarseness(DAffine3::IDENTITY);
     let (full, matched) = (deep.casts(&views, &eye, Coarseness::NONE), deep.casts(&views, &eye, coarseness));
     let samples = |casts: &[Cast]| casts.iter().map(|cast| cast.samples).sum::<u64>() as f64;
     let of_samples = samples(&matched) / samples(&full);
@@ -259,7 +288,7 @@ fn textures_beyond_the_field_of_depth_do_not_alias() {
         let behind = DAffine3::from_translation(DVec3::new(0.0, 0.0, -0.3));
         assert!(array.resolution().field_of_depth_m(deep.scene.parameters.voxel_length_m()) < 0.2);
         let views = array.views(behind);
-        let coarseness = deep.coarseness(&views);
+        let coarseness = deep.coarseness(behind);
         for right_m in [-0.045, 0.0, 0.031] {
             let eye = Eye::new(array.virtual_viewer_m() + DVec3::X * right_m, SIZE).unwrap();
             let beams = deep.of_beams(|moved| eye.view(array.description().screen_size_m, moved * behind));

@@ -75,8 +75,8 @@ pub(super) fn measure(stage: &Stage<'_>) -> Result<Vec<FullFrame>, Failure> {
     };
     let mut casts = vec![of("full", ResolvedShot { shot: full, coarseness: Coarseness::NONE })];
     if stage.has_levels {
-        let resolution = stage.array.resolution();
-        let resolved = engine.prepare_resolved(stage.parameters, stage.skipping, resolution, &views)?;
+        let places = [display_from_world];
+        let resolved = engine.prepare_resolved(stage.parameters, stage.skipping, stage.array, &places)?;
         casts.push(of("matched", resolved));
     }
     let title = format!("{}, {} projectors", stage.name, views.len());

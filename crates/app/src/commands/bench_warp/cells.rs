@@ -3,7 +3,7 @@
 use crate::backend::{Engine, Shot};
 use crate::failure::Failure;
 use wheatstone_core::budget::CellGrid;
-use wheatstone_core::view::{Frustum, PixelRect, Projection, View};
+use wheatstone_core::view::View;
 
 /// Cells along the longer side of a picture: some hundreds in all, so that a refresh holds many of a view that takes several.
 const CELLS_PER_SIDE: u32 = 24;
@@ -19,17 +19,12 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Those of a view of a frustum: a cell takes as long as it has samples, and as many more as it has rays.
-    pub(super) fn of(
-        engine: &mut Engine<'_>,
-        shot: Shot,
-        view: &View,
-        frustum: Frustum,
-    ) -> Result<Self, Failure> {
+    /// Those of a view: a cell takes as long as it has samples, and as many more as it has rays.
+    pub(super) fn of(engine: &mut Engine<'_>, shot: Shot, view: &View) -> Result<Self, Failure> {
         let grid = grid(view.size)?;
         let works = (0..grid.cells())
             .map(|cell| {
-                let part = part_of(view, frustum, &grid.rect(cell));
+                let part = view.part(&grid.rect(cell));
                 engine.cast(shot, &[part])?;
                 let rays = f64::from(part.size[0]) * f64::from(part.size[1]);
                 Ok(engine.read()?[0].samples as f64 + rays)
@@ -54,22 +49,6 @@ fn grid(size: [u32; 2]) -> Result<CellGrid, Failure> {
     CellGrid::new(size, cell_side_px).map_err(Failure::input)
 }
 
-/// Some pixels of a view of a frustum as a view of their own.
-fn part_of(view: &View, frustum: Frustum, rect: &PixelRect) -> View {
-    let [width, height] = view.size.map(f64::from);
-    let across = |column: u32| frustum.left + (frustum.right - frustum.left) * f64::from(column) / width;
-    let down = |row: u32| frustum.up + (frustum.down - frustum.up) * f64::from(row) / height;
-    let part = Frustum {
-        left: across(rect.columns.start),
-        right: across(rect.columns.end),
-        up: down(rect.rows.start),
-        down: down(rect.rows.end),
-        ..frustum
-    };
-    let size = [rect.columns.len() as u32, rect.rows.len() as u32];
-    View { projection: Projection::Perspective(part), size, ..*view }
-}
-
 #[cfg(test)]
 impl Cells {
     /// Those of a picture of a size, in which the work of a cell grows with its number.
@@ -89,7 +68,7 @@ mod tests {
     use wheatstone_core::phantom::Phantom;
     use wheatstone_core::scene::{Placement, Settings};
     use wheatstone_core::transfer::TransferFunction;
-    use wheatstone_core::view::{Orbit, world_from_patient};
+    use wheatstone_core::view::{Frustum, Orbit, Projection, world_from_patient};
     use wheatstone_core::volume::StorageKind;
 
     #[test]
@@ -102,7 +81,7 @@ mod tests {
         let size = [96, 64];
         let frustum = Frustum::from_fov_y(1.2, size).unwrap();
         let view = Orbit { distance_m: 2.0, ..Orbit::default() }.view(Projection::Perspective(frustum), size);
-        let cells = Cells::of(&mut engine, shot, &view, frustum).unwrap();
+        let cells = Cells::of(&mut engine, shot, &view).unwrap();
         let [columns, rows] = cells.grid.dims();
         let shares: Vec<f64> = (0..cells.grid.cells()).map(|cell| cells.share(cell)).collect();
         assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);

@@ -14,3 +14,4 @@ pub use column::SeenView;
 pub use eye::{Eye, EyeError};
 pub use lenses::NotOfPanel;
 pub use lobe::DARK;
+pub use projectors::SeenParts;

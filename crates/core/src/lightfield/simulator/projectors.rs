@@ -6,6 +6,39 @@ use crate::image::RgbImage;
 use crate::lightfield::ProjectorArray;
 use crate::lightfield::projectors::{PackingError, Projector};
 use glam::DVec2;
+use std::ops::Range;
+
+/// Which columns of the projectors' images an eye sees anything of, and where.
+#[derive(Debug, Clone)]
+pub struct SeenParts {
+    eye: Eye,
+    /// In each column of its picture; places are in the parts.
+    views: Vec<Vec<SeenView>>,
+    columns: Vec<Range<u32>>,
+}
+
+impl SeenParts {
+    /// Those of each projector's image, in their order; none of those that are not seen.
+    pub fn columns(&self) -> &[Range<u32>] {
+        &self.columns
+    }
+
+    /// What the eye sees, of pictures of these columns alone.
+    ///
+    /// # Panics
+    /// If there are fewer pictures than projectors.
+    pub fn picture(&self, parts: &[RgbImage]) -> RgbImage {
+        self.eye.picture_of(&self.views, parts)
+    }
+
+    /// The columns of the eye's picture between which it sees any projector.
+    pub fn lit_columns(&self) -> Range<u32> {
+        let is_lit = |views: &Vec<SeenView>| !views.is_empty();
+        let first = self.views.iter().position(is_lit).unwrap_or(0);
+        let end = self.views.iter().rposition(is_lit).map_or(0, |last| last + 1);
+        first as u32..end as u32
+    }
+}
 
 impl ProjectorArray {
     /// What an eye sees of the projectors' images, which are in the order of the projectors.
@@ -18,6 +51,28 @@ impl ProjectorArray {
     pub fn seen_from(&self, eye: &Eye, images: &[RgbImage]) -> Result<RgbImage, PackingError> {
         self.check_images(images)?;
         Ok(eye.picture_of(&self.views_seen_from(eye), images))
+    }
+
+    /// Which columns of the projectors' images an eye sees anything of.
+    pub fn parts_seen_from(&self, eye: &Eye) -> SeenParts {
+        let mut views = self.views_seen_from(eye);
+        let [width, _] = self.description().image_size_px;
+        let mut columns = vec![0..0; self.projectors().len()];
+        for seen in views.iter().flatten() {
+            let at = seen.along * f64::from(width);
+            // Interpolation reads the pixels whose middles are around a place.
+            let first = (at - 0.5).floor().max(0.0) as u32;
+            let end = ((at + 0.5).ceil() as u32 + 1).min(width);
+            let seen: &mut Range<u32> = &mut columns[seen.index];
+            *seen =
+                if seen.start == seen.end { first..end } else { seen.start.min(first)..seen.end.max(end) };
+        }
+        for seen in views.iter_mut().flatten() {
+            let part = &columns[seen.index];
+            seen.along =
+                (seen.along * f64::from(width) - f64::from(part.start)) / f64::from(part.len() as u32);
+        }
+        SeenParts { eye: *eye, views, columns }
     }
 
     /// Which projectors an eye sees in each column of its picture, and where in their images it looks.
