@@ -345,7 +345,10 @@ fn bench_lightfield_compares_anchors_with_casts_of_every_view() {
     assert!(samples[1] <= samples[0] && samples[1] > Some(0), "{frames:?}");
     for frame in frames {
         let eyes = frame["eyes"].as_array().unwrap();
-        assert!(eyes.len() == 33 && eyes.iter().all(|eye| keys(eye) == ["dssim", "dssim_of_beams", "eye_m", "walk"]));
+        assert!(
+            eyes.len() == 33
+                && eyes.iter().all(|eye| keys(eye) == ["dssim", "dssim_of_beams", "eye_m", "walk"])
+        );
         let errors = |walk: &str| -> Vec<f64> {
             let of_walk = eyes.iter().filter(|eye| eye["walk"] == walk);
             of_walk.map(|eye| eye["dssim"].as_f64().unwrap()).collect()
