@@ -54,7 +54,9 @@ pub(super) fn refreshes(
     let grid = cells.grid;
     let period_s = pace.display.period_s();
     let available_s = pace.available_s();
-    let refreshes_of_cast = (pace.render_s / available_s).ceil();
+    // As many as the last picture has taken.
+    let mut refreshes_of_cast = (pace.render_s / available_s).ceil();
+    let mut completed = -REFRESHES_BEFORE;
     let mut random = fastrand::Rng::with_seed(1);
     let request = |pose| ViewRequest::new(pose, grid, 1.0).map_err(Failure::input);
     let mut schedule = CastSchedule::new(request(motion.eyes_at(0.0))?, Predictor::Corrected);
@@ -74,8 +76,12 @@ pub(super) fn refreshes(
             completes = batch.completes_view();
             schedule.record(&batch, &taken_s).map_err(Failure::input)?;
         }
-        picture += u64::from(completes);
         refresh += 1.0;
+        if completes {
+            picture += 1;
+            refreshes_of_cast = refresh - completed;
+            completed = refresh;
+        }
         if let Some(front) = schedule.front().filter(|_| refresh >= 0.0) {
             shown.push(Refresh {
                 eyes: motion.eyes_at(refresh * period_s),
