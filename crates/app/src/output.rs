@@ -85,6 +85,15 @@ pub(crate) fn numbered(path: &Path, index: u32) -> PathBuf {
     path.with_file_name(format!("{stem}_{index:04}.{extension}"))
 }
 
+/// The path of a file that is not there and not taken: `OUT.png`, `OUT-2.png`, `OUT-3.png` and so on.
+pub(crate) fn unused(path: &Path, is_taken: impl Fn(&Path) -> bool) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    let others = (2_u64..).map(|number| path.with_file_name(format!("{stem}-{number}.{extension}")));
+    let is_free = |path: &PathBuf| path.symlink_metadata().is_err() && !is_taken(path);
+    std::iter::once(path.to_owned()).chain(others).find(is_free).unwrap_or_else(|| path.to_owned())
+}
+
 /// Files in words.
 pub(crate) fn described(outputs: &[PathBuf]) -> String {
     match outputs {
@@ -109,6 +118,17 @@ mod tests {
     fn frames_are_numbered_before_the_extension() {
         assert_eq!(numbered(Path::new("a/b.c.png"), 7), Path::new("a/b.c_0007.png"));
         assert_eq!(numbered(Path::new("x.png"), 12345), Path::new("x_12345.png"));
+    }
+
+    #[test]
+    fn a_name_that_is_taken_is_followed_by_the_next() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        assert_eq!(unused(&path("a.png"), |_| false), path("a.png"));
+        std::fs::write(path("a.png"), []).unwrap();
+        std::fs::write(path("a-3.png"), []).unwrap();
+        assert_eq!(unused(&path("a.png"), |_| false), path("a-2.png"));
+        assert_eq!(unused(&path("a.png"), |other| other == path("a-2.png")), path("a-4.png"));
     }
 
     #[test]

@@ -184,7 +184,7 @@ impl CastParameters {
             [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
         let diagonal =
             corners.map(|c| (self.metric_from_texture * c).length()).into_iter().fold(0.0, f32::max);
-        (diagonal * self.sampling_factor).ceil() as u32 + 1
+        ((diagonal * self.sampling_factor).ceil() as u32).saturating_add(1)
     }
 
     /// The same, where all occupied blocks are in a box, texture space. Only composites whose samples are looked up one by one take that

@@ -263,7 +263,7 @@ impl Placement {
         self.world_from_texture.inverse()
     }
 
-    /// The unit of length of steps and opacities: the smallest voxel spacing, in world metres.
+    /// The unit of length of steps and opacities, [`Grid::voxel_length_mm`] in world metres.
     pub fn voxel_length_m(&self) -> f64 {
         self.voxel_length_m
     }

@@ -1,5 +1,6 @@
 //! Why a file could not be read or written.
 
+use crate::cancel::is_cancelled;
 use std::{
     io,
     path::{Path, PathBuf},
@@ -183,6 +184,9 @@ pub enum ReadError {
          such as bonsai_256x256x256_uint8.raw"
     )]
     RawName,
+    /// [`Cancel::cancel`](crate::Cancel::cancel) was called.
+    #[error("reading was given up before its end")]
+    Cancelled,
     /// Every voxel is NaN or infinite.
     #[error("all {count} voxels are NaN or infinite; expected at least one finite value")]
     NothingFinite {
@@ -216,6 +220,7 @@ impl ReadError {
     pub(crate) fn io(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound => Self::NotFound,
+            _ if is_cancelled(&error) => Self::Cancelled,
             _ => Self::Io { error },
         }
     }

@@ -8,6 +8,7 @@
 //! further, and every malformed file ends in a [`ReadError`] that names the field.
 
 mod atomic;
+mod cancel;
 mod error;
 mod geometry;
 mod metaimage;
@@ -23,9 +24,10 @@ mod voxel_data;
 mod warning;
 
 pub use atomic::write_atomically;
+pub use cancel::Cancel;
 pub use error::{ReadError, WriteError};
 pub use nrrd::{encode_nrrd, write_nrrd};
-pub use open::{read_bytes, read_raw, read_raw_bytes, read_volume};
+pub use open::{read_bytes, read_raw, read_raw_bytes, read_raw_unless, read_volume, read_volume_unless};
 pub use raw::RawLayout;
 pub use voxel_data::MAX_VOXEL_BYTES;
 pub use warning::Warning;
@@ -83,6 +85,13 @@ impl Loaded {
         })?;
         if volume.non_finite_count() > 0 {
             warnings.push(Warning::NonFiniteVoxels { count: volume.non_finite_count() });
+        }
+        let (spacing_mm, step_mm) =
+            (volume.grid().spacing_mm().min_element(), volume.grid().voxel_length_mm());
+        if step_mm > spacing_mm {
+            let [x, y, z] = volume.grid().size_mm().to_array();
+            let size_mm = format!("{x:.3e} × {y:.3e} × {z:.3e} mm");
+            warnings.push(Warning::StepsLengthened { size_mm, step_mm, spacing_mm });
         }
         Ok(Self { volume, warnings, format })
     }

@@ -1,7 +1,7 @@
 //! Finds out what a file is, and hands it to the reader of its format.
 
 use crate::{
-    Format, Loaded, RawLayout, ReadError, Warning, metaimage, nifti, nrrd, raw,
+    Cancel, Format, Loaded, RawLayout, ReadError, Warning, metaimage, nifti, nrrd, raw,
     siblings::Siblings,
     stream::{Compression, Stream},
 };
@@ -18,7 +18,15 @@ const MAGIC_BYTES: usize = 512;
 /// # Errors
 /// Any [`ReadError`], always as [`ReadError::InFile`].
 pub fn read_volume(path: &Path) -> Result<Loaded, ReadError> {
-    read_by_content(path).map_err(|error| error.in_file(path))
+    read_volume_unless(path, &Cancel::default())
+}
+
+/// The same, unless it is given up.
+///
+/// # Errors
+/// Any [`ReadError`], always as [`ReadError::InFile`].
+pub fn read_volume_unless(path: &Path, cancel: &Cancel) -> Result<Loaded, ReadError> {
+    read_by_content(path, cancel).map_err(|error| error.in_file(path))
 }
 
 /// Reads a raw file with a known layout.
@@ -26,7 +34,15 @@ pub fn read_volume(path: &Path) -> Result<Loaded, ReadError> {
 /// # Errors
 /// Any [`ReadError`], always as [`ReadError::InFile`].
 pub fn read_raw(path: &Path, layout: &RawLayout) -> Result<Loaded, ReadError> {
-    read_raw_file(path, layout).map_err(|error| error.in_file(path))
+    read_raw_unless(path, layout, &Cancel::default())
+}
+
+/// The same, unless it is given up.
+///
+/// # Errors
+/// Any [`ReadError`], always as [`ReadError::InFile`].
+pub fn read_raw_unless(path: &Path, layout: &RawLayout, cancel: &Cancel) -> Result<Loaded, ReadError> {
+    read_raw_file(path, layout, cancel).map_err(|error| error.in_file(path))
 }
 
 /// Reads a volume from memory. `detached` holds the voxels where the header says that they are in another file.
@@ -47,27 +63,27 @@ pub fn read_raw_bytes(bytes: &[u8], layout: &RawLayout) -> Result<Loaded, ReadEr
     raw::read(Stream::of_bytes(bytes)?, layout)
 }
 
-fn read_raw_file(path: &Path, layout: &RawLayout) -> Result<Loaded, ReadError> {
-    let stream = Stream::open(path)?;
+fn read_raw_file(path: &Path, layout: &RawLayout, cancel: &Cancel) -> Result<Loaded, ReadError> {
+    let stream = Stream::open(path, cancel)?;
     let is_gz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     raw::read(if is_gz { stream.decompress(Compression::Gzip) } else { stream }, layout)
 }
 
-fn read_by_content(path: &Path) -> Result<Loaded, ReadError> {
+fn read_by_content(path: &Path, cancel: &Cancel) -> Result<Loaded, ReadError> {
     let extension = Extension::of(path);
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     if extension == Extension::Raw
         && let Some(layout) = RawLayout::from_file_name(&name)
     {
-        return read_raw_file(path, &layout);
+        return read_raw_file(path, &layout, cancel);
     }
-    let mut stream = Stream::open(path)?.gunzip_by_magic()?;
+    let mut stream = Stream::open(path, cancel)?.gunzip_by_magic()?;
     if extension == Extension::NiftiImage
-        && let Some(header_path) = Siblings::File(path).nifti_header()
+        && let Some(header_path) = Siblings::File(path, cancel).nifti_header()
     {
-        let stream = Stream::open(&header_path).and_then(Stream::gunzip_by_magic);
+        let stream = Stream::open(&header_path, cancel).and_then(Stream::gunzip_by_magic);
         return stream
-            .and_then(|stream| nifti::read(stream, Siblings::File(&header_path)))
+            .and_then(|stream| nifti::read(stream, Siblings::File(&header_path, cancel)))
             .map_err(|error| error.in_file(&header_path));
     }
     let start = stream.peek(MAGIC_BYTES)?;
@@ -77,7 +93,7 @@ fn read_by_content(path: &Path) -> Result<Loaded, ReadError> {
         Extension::Raw => ReadError::RawName,
         _ => ReadError::UnknownFormat,
     })?;
-    let mut loaded = read_format(format, stream, Siblings::File(path))?;
+    let mut loaded = read_format(format, stream, Siblings::File(path, cancel))?;
     if by_extension != Some(format) {
         loaded.warnings.insert(0, Warning::ExtensionMismatch { format });
     }

@@ -1,7 +1,7 @@
 //! The other file, where a header and its voxels are apart.
 
 use crate::{
-    ReadError,
+    Cancel, ReadError,
     stream::{Compression, Stream},
 };
 use std::{
@@ -12,8 +12,8 @@ use std::{
 /// Where to look for the voxels that a header places outside itself.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Siblings<'a> {
-    /// Beside the header file with this path.
-    File(&'a Path),
+    /// Beside the header file with this path, to be read until that is given up.
+    File(&'a Path, &'a Cancel),
     /// In memory, if they were given along.
     Bytes(Option<&'a [u8]>),
 }
@@ -28,9 +28,9 @@ impl<'a> Siblings<'a> {
     ) -> Result<T, ReadError> {
         match self {
             Self::Bytes(bytes) => read(Stream::of_bytes(bytes.ok_or(ReadError::Detached)?)?),
-            Self::File(header_path) => {
+            Self::File(header_path, cancel) => {
                 let data_path = header_path.with_file_name("").join(name);
-                read_data_file(field, header_path, &data_path, read)
+                read_data_file(field, (header_path, &data_path), cancel, read)
             }
         }
     }
@@ -42,11 +42,11 @@ impl<'a> Siblings<'a> {
     ) -> Result<T, ReadError> {
         match self {
             Self::Bytes(bytes) => read(Stream::of_bytes(bytes.ok_or(ReadError::Detached)?)?),
-            Self::File(header_path) => {
+            Self::File(header_path, cancel) => {
                 let candidates = with_extensions(header_path, &["img", "img.gz", "IMG"]);
                 let image_path = candidates.iter().find(|path| path.exists()).unwrap_or(&candidates[0]);
                 let is_gz = image_path.extension().is_some_and(|extension| extension == "gz");
-                read_data_file("magic", header_path, image_path, |stream| {
+                read_data_file("magic", (header_path, image_path), cancel, |stream| {
                     read(if is_gz { stream.decompress(Compression::Gzip) } else { stream })
                 })
             }
@@ -55,7 +55,7 @@ impl<'a> Siblings<'a> {
 
     /// The `.hdr` file that belongs to a NIfTI `.img` file.
     pub(crate) fn nifti_header(self) -> Option<PathBuf> {
-        let Self::File(image_path) = self else { return None };
+        let Self::File(image_path, _) = self else { return None };
         with_extensions(image_path, &["hdr", "hdr.gz", "HDR"]).into_iter().find(|path| path.is_file())
     }
 }
@@ -68,8 +68,8 @@ fn with_extensions(path: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 
 fn read_data_file<T>(
     field: &'static str,
-    header_path: &Path,
-    data_path: &Path,
+    (header_path, data_path): (&Path, &Path),
+    cancel: &Cancel,
     read: impl FnOnce(Stream<'_>) -> Result<T, ReadError>,
 ) -> Result<T, ReadError> {
     let unusable = |fault| ReadError::DataFile { field, data_path: data_path.to_owned(), fault };
@@ -79,7 +79,7 @@ fn read_data_file<T>(
     {
         return Err(unusable("is the header itself"));
     }
-    let stream = Stream::open(data_path).map_err(|error| match error {
+    let stream = Stream::open(data_path, cancel).map_err(|error| match error {
         ReadError::NotFound => unusable("does not exist"),
         ReadError::NotAFile { .. } => unusable("is not a regular file"),
         ReadError::Empty => unusable("is empty"),

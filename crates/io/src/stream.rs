@@ -1,6 +1,6 @@
 //! Bytes from a file or from memory, read forward, plain or decompressed, with a bound on how many can come.
 
-use crate::ReadError;
+use crate::{Cancel, ReadError, cancel::is_cancelled};
 use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
 use std::{
     fs::{self, File},
@@ -40,8 +40,9 @@ pub(crate) struct Stream<'a> {
 }
 
 impl Stream<'static> {
-    /// Opens a regular file. Anything else is refused before it is opened, since opening a pipe may block.
-    pub(crate) fn open(path: &Path) -> Result<Self, ReadError> {
+    /// Opens a regular file, to be read until that is given up. Anything else is refused before it is opened, since opening a pipe
+    /// may block.
+    pub(crate) fn open(path: &Path, cancel: &Cancel) -> Result<Self, ReadError> {
         let metadata = fs::metadata(path).map_err(ReadError::io)?;
         if metadata.is_dir() {
             return Err(ReadError::NotAFile { found: "directory" });
@@ -53,7 +54,7 @@ impl Stream<'static> {
             return Err(ReadError::Empty);
         }
         let file = File::open(path).map_err(ReadError::io)?;
-        let reader = Box::new(BufReader::with_capacity(1 << 16, file));
+        let reader = Box::new(BufReader::with_capacity(1 << 16, cancel.watch(file)));
         Ok(Self { reader, remaining: metadata.len(), compression: None })
     }
 }
@@ -238,7 +239,8 @@ impl<'a> Stream<'a> {
         use io::ErrorKind::{InvalidData, InvalidInput};
         match self.compression {
             Some(compression)
-                if matches!(error.kind(), InvalidData | InvalidInput | io::ErrorKind::Other) =>
+                if matches!(error.kind(), InvalidData | InvalidInput | io::ErrorKind::Other)
+                    && !is_cancelled(&error) =>
             {
                 ReadError::Corrupt { encoding: compression.name(), detail: error.to_string() }
             }

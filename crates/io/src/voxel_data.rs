@@ -1,6 +1,6 @@
 //! From a stream of scalars to typed voxels: types, byte order, components, frames, and size limits.
 
-use crate::{ReadError, Warning, stream::Stream};
+use crate::{ReadError, Warning, cancel::is_cancelled, stream::Stream};
 use std::str::FromStr;
 use wheatstone_core::volume::{VoxelType, Voxels};
 
@@ -136,6 +136,7 @@ pub(crate) fn read_binary(
         match stream.has_more() {
             Ok(false) => {}
             Ok(true) => warnings.push(Warning::ExtraData),
+            Err(error) if is_cancelled(&error) => return Err(ReadError::Cancelled),
             Err(error) => warnings.push(Warning::Unverified { detail: error.to_string() }),
         }
     }

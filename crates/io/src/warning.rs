@@ -59,6 +59,18 @@ pub enum Warning {
         /// The axis, from 1.
         axis: usize,
     },
+    /// Spacings or sizes so different that steps of the smallest spacing would never come to an end.
+    #[error(
+        "the volume is {size_mm}: rays take steps of {step_mm:.3e} mm instead of the smallest spacing, {spacing_mm:.3e} mm"
+    )]
+    StepsLengthened {
+        /// Edge lengths of the volume, in words.
+        size_mm: String,
+        /// The unit of length of steps.
+        step_mm: f64,
+        /// The smallest spacing.
+        spacing_mm: f64,
+    },
     /// The header does not tell the byte order of voxels that have more than one byte.
     #[error("the file does not tell its byte order: little-endian is assumed")]
     ByteOrderAssumed,

@@ -20,10 +20,14 @@ pub(crate) enum Command {
     Reload,
     /// Saves what is shown, as JSON.
     Save(PathBuf),
+    /// The same by a name that no file has: a.json, a-2.json, a-3.json and so on.
+    SaveNew(PathBuf),
     /// Writes the picture, once it is at rest: PNG.
     Picture(PathBuf),
     /// Writes the whole window as it is now: PNG.
     Screenshot(PathBuf),
+    /// The same by a name that no file has.
+    ScreenshotNew(PathBuf),
     /// Writes so many pictures at rest of a full turn, numbered before the extension: PNG.
     Turntable { pictures: u32, path: PathBuf },
     /// Takes a transfer function by name or from a file, as `--tf` does.

@@ -6,7 +6,7 @@ use super::command::Command;
 use super::eyes::{BeyondReach, Eyes, Wanted};
 use super::report::Report;
 use super::screen::{Panels, Pictures, Screen};
-use super::script::{Due, Happening, Player, Status};
+use super::script::{Dropped, Due, Happening, Player, Status, of_what_exists};
 use super::session::Session;
 use super::show::Area;
 use super::timings::Timings;
@@ -216,7 +216,11 @@ impl Viewer {
             match happening {
                 Happening::Command(command) => self.session.perform(command),
                 Happening::Event(event) => input.events.push(event.clone()),
-                Happening::Drop(path) => self.session.perform(&Command::Drop(vec![path.clone()])),
+                Happening::EditOfSome(edit) => {
+                    let edit = of_what_exists(edit, self.session.state());
+                    self.session.perform(&edit.into());
+                }
+                Happening::Drop(path) => input.dropped_files.push(Arc::new(Dropped::new(path))),
                 Happening::Resize(size) => resize = Some(size.map(clamped_side)),
             }
         }
@@ -235,6 +239,7 @@ impl Viewer {
                 state: session.state(),
                 beholder: &Beholder::Camera,
                 facts: session.facts(),
+                preset: session.preset(),
                 placement: casting.placement(),
                 progress: session.progress(),
                 notes: &notes,

@@ -17,6 +17,8 @@ pub(crate) struct Facts {
     pub(crate) grid: Grid,
     pub(crate) voxel_type: VoxelType,
     pub(crate) full_window: Window,
+    /// What the reader assumed or left out.
+    pub(crate) warnings: Vec<String>,
     statistics: Statistics,
     histogram: Histogram,
 }
@@ -31,9 +33,15 @@ impl Facts {
             grid: volume.grid().clone(),
             voxel_type: volume.voxels().voxel_type(),
             full_window,
+            warnings: Vec::new(),
             histogram: statistics.histogram(full_window, BINS),
             statistics,
         }
+    }
+
+    /// The same with what the reader assumed or left out.
+    pub(crate) fn with_warnings(self, warnings: Vec<String>) -> Self {
+        Self { warnings, ..self }
     }
 
     /// A transfer function for the volume.

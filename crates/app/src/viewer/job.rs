@@ -5,6 +5,7 @@ use std::io;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
+use wheatstone_io::Cancel;
 
 /// Wakes the window when there is news.
 pub(crate) type Waker = Arc<dyn Fn() + Send + Sync>;
@@ -18,16 +19,22 @@ pub(crate) struct Progress {
     pub(crate) done: Option<f32>,
 }
 
-/// What a job tells with.
+/// What a job tells with, and is told by that it has been given up.
 pub(crate) struct Teller<T> {
     news: Sender<News<T>>,
     wake: Waker,
+    cancel: Cancel,
 }
 
 impl<T> Teller<T> {
     /// How far it is. A listener that has gone away is none.
     pub(crate) fn tell(&self, what: &'static str, done: Option<f32>) {
         self.send(News::Progress(Progress { what, done }));
+    }
+
+    /// What the job has to look at every now and then.
+    pub(crate) fn cancel(&self) -> &Cancel {
+        &self.cancel
     }
 
     fn send(&self, news: News<T>) {
@@ -42,10 +49,17 @@ enum News<T> {
     Done(Result<T, Failure>),
 }
 
-/// Work in a thread of its own. One that nobody waits for any more goes on to its end unheard.
+/// Work in a thread of its own. One that is dropped is given up, and goes on unheard until it looks.
 pub(crate) struct Job<T> {
     news: Receiver<News<T>>,
     progress: Progress,
+    cancel: Cancel,
+}
+
+impl<T> Drop for Job<T> {
+    fn drop(&mut self) {
+        self.cancel.cancel();
+    }
 }
 
 impl<T: Send + 'static> Job<T> {
@@ -56,12 +70,13 @@ impl<T: Send + 'static> Job<T> {
         work: impl FnOnce(&Teller<T>) -> Result<T, Failure> + Send + 'static,
     ) -> io::Result<Self> {
         let (sender, news) = channel();
+        let cancel = Cancel::default();
+        let teller = Teller { news: sender, wake, cancel: cancel.clone() };
         thread::Builder::new().name(what.to_owned()).spawn(move || {
-            let teller = Teller { news: sender, wake };
             let outcome = work(&teller);
             teller.send(News::Done(outcome));
         })?;
-        Ok(Self { news, progress: Progress { what, done: None } })
+        Ok(Self { news, progress: Progress { what, done: None }, cancel })
     }
 
     /// How far it is, as far as [`Job::poll`] has heard.
@@ -118,6 +133,20 @@ mod tests {
         while wakes.load(Ordering::SeqCst) < 2 {
             thread::yield_now();
         }
+    }
+
+    #[test]
+    fn a_job_that_is_dropped_is_told() {
+        let (sender, ended) = channel();
+        let job = Job::begin("waiting", Arc::new(|| {}), move |teller| {
+            while !teller.cancel().is_cancelled() {
+                thread::yield_now();
+            }
+            sender.send(()).unwrap();
+            Ok(())
+        });
+        drop(job.unwrap());
+        ended.recv().unwrap();
     }
 
     #[test]

@@ -15,7 +15,7 @@ use std::time::Duration;
 use wheatstone_core::reference::Caster;
 use wheatstone_core::skip::{Skip, SkipPlan, SkipRequest, Structure};
 use wheatstone_core::volume::{StorageKind, Volume};
-use wheatstone_io::{RawLayout, read_raw, read_volume};
+use wheatstone_io::{Cancel, RawLayout, ReadError, read_raw_unless, read_volume_unless};
 use wheatstone_render::skip::{SkipBuilder, SkipKernels};
 use wheatstone_render::{Gpu, GpuVolume, TexelFormat};
 
@@ -78,17 +78,33 @@ pub(crate) enum Destination {
     Headset,
 }
 
-/// What all loads of a session have in common.
+/// What all loads of a session have in common. One of them is at work at a time: the next waits until one that was given up has ended.
 pub(crate) struct Loader {
     wake: Waker,
     destination: Destination,
+    /// Held once more by the thread of the load that is at work.
+    busy: Arc<()>,
     /// They do not depend on the volume: the first makes them.
     kernels: Arc<OnceLock<SkipKernels>>,
 }
 
+/// The right to work. When it ends, whoever waits for it is woken.
+pub(crate) struct Turn {
+    held: Option<Arc<()>>,
+    wake: Waker,
+}
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        self.held = None;
+        (self.wake)();
+    }
+}
+
 /// A file is read first, while the device may still be being opened.
 pub(crate) enum Loading {
-    Reading(Job<Read>),
+    Waiting(Source),
+    Reading(Job<(Read, Turn)>),
     Uploading(Job<Arrived>),
     InSteps(Box<Upload>),
 }
@@ -101,18 +117,19 @@ pub(crate) enum Step {
 
 impl Loader {
     pub(crate) fn new(wake: Waker, destination: Destination) -> Self {
-        Self { wake, destination, kernels: Arc::default() }
+        Self { wake, destination, busy: Arc::default(), kernels: Arc::default() }
     }
 
-    /// Begins to read.
+    /// Begins to read, or waits if what was given up has not ended.
     pub(crate) fn begin(&self, source: Source) -> Result<Loading, Failure> {
+        let Some(turn) = self.turn() else { return Ok(Loading::Waiting(source)) };
         let destination = self.destination;
         let job = Job::begin("reading", Arc::clone(&self.wake), move |teller| {
-            let volume = read(&source)?;
+            let (volume, warnings) = read(&source, teller.cancel())?;
             teller.tell("measuring", None);
-            let facts = Facts::of(&volume, source.file.as_deref());
+            let facts = Facts::of(&volume, source.file.as_deref()).with_warnings(warnings);
             let held = (destination == Destination::Headset).then(|| Caster::new(&volume));
-            Ok(Read { volume, facts, held })
+            Ok((Read { volume, facts, held }, turn))
         });
         Ok(Loading::Reading(job.context("cannot begin to read")?))
     }
@@ -120,11 +137,13 @@ impl Loader {
     /// Goes on as far as it can without waiting, or by a step of an upload that takes no longer than a time, as far as is known.
     pub(crate) fn step(&self, loading: Loading, gpu: &Arc<Gpu>, time: Duration) -> Result<Step, Failure> {
         Ok(match loading {
+            Loading::Waiting(source) => Step::UnderWay(self.begin(source)?),
             Loading::Reading(mut job) => Step::UnderWay(match (job.poll(), self.destination) {
                 (None, _) => Loading::Reading(job),
                 (Some(read), Destination::Window) => Loading::Uploading(self.upload(read?, gpu)?),
                 (Some(read), Destination::Headset) => {
-                    Loading::InSteps(Box::new(Upload::begin(gpu, read?, kept(&self.kernels, gpu)?)?))
+                    let (read, turn) = read?;
+                    Loading::InSteps(Box::new(Upload::begin(gpu, read, turn, kept(&self.kernels, gpu)?)?))
                 }
             }),
             Loading::Uploading(mut job) => match job.poll() {
@@ -141,9 +160,21 @@ impl Loader {
         upload(gpu, Read { volume, facts, held: None }, &self.kernels, &|_| ())
     }
 
-    fn upload(&self, read: Read, gpu: &Arc<Gpu>) -> Result<Job<Arrived>, Failure> {
+    /// Threads that are at work, those of a load that was given up included.
+    #[cfg(test)]
+    pub(super) fn loads_at_work(&self) -> usize {
+        Arc::strong_count(&self.busy) - 1
+    }
+
+    fn turn(&self) -> Option<Turn> {
+        let is_free = Arc::strong_count(&self.busy) == 1;
+        is_free.then(|| Turn { held: Some(Arc::clone(&self.busy)), wake: Arc::clone(&self.wake) })
+    }
+
+    fn upload(&self, (read, turn): (Read, Turn), gpu: &Arc<Gpu>) -> Result<Job<Arrived>, Failure> {
         let (gpu, kernels) = (Arc::clone(gpu), Arc::clone(&self.kernels));
         let job = Job::begin("uploading", Arc::clone(&self.wake), move |teller| {
+            let _turn = turn;
             upload(&gpu, read, &kernels, &|done| teller.tell("uploading", Some(done)))
         });
         Ok(job.context("cannot begin to upload")?)
@@ -154,6 +185,7 @@ impl Loading {
     /// How far it is.
     pub(crate) fn progress(&self) -> Progress {
         match self {
+            Self::Waiting(_) => Progress { what: "waiting", done: None },
             Self::Reading(job) => job.progress(),
             Self::Uploading(job) => job.progress(),
             Self::InSteps(upload) => upload.progress(),
@@ -178,14 +210,18 @@ pub(super) fn planned(gpu: &Gpu, volume: &Volume) -> (TexelFormat, Option<SkipPl
     (TexelFormat::for_volume(volume, storage, gpu), plan)
 }
 
-fn read(source: &Source) -> Result<Volume, Failure> {
+/// The volume, and what its reader assumed or left out.
+fn read(source: &Source, cancel: &Cancel) -> Result<(Volume, Vec<String>), Failure> {
     let loaded = match (&source.file, &source.layout) {
         (None, _) => shipped::brain()?,
-        (Some(file), Some(layout)) => read_raw(file, layout)?,
-        (Some(file), None) => read_volume(file)?,
+        (Some(file), Some(layout)) => read_raw_unless(file, layout, cancel)?,
+        (Some(file), None) => read_volume_unless(file, cancel)?,
     };
+    if cancel.is_cancelled() {
+        return Err(ReadError::Cancelled.into());
+    }
     print_warnings(source.file.as_deref().unwrap_or(Path::new(shipped::BRAIN_PATH)), &loaded);
-    Ok(loaded.volume)
+    Ok((loaded.volume, loaded.warnings.iter().map(ToString::to_string).collect()))
 }
 
 fn upload(
@@ -205,4 +241,42 @@ fn upload(
         None => None,
     };
     Ok(Arrived { facts, volume, held, skipping })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn one_load_is_at_work_at_a_time_and_the_next_is_woken_when_it_ends() {
+        let wakes = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&wakes);
+        let wake: Waker = Arc::new(move || {
+            counted.fetch_add(1, Ordering::SeqCst);
+        });
+        let loader = Loader::new(wake, Destination::Window);
+        let given_up = loader.turn().unwrap();
+        let source = Source { file: Some("missing.nrrd".into()), layout: None };
+        assert!(matches!(loader.begin(source.clone()).unwrap(), Loading::Waiting(next) if next == source));
+        assert_eq!(wakes.load(Ordering::SeqCst), 0);
+        drop(given_up);
+        assert_eq!(wakes.load(Ordering::SeqCst), 1);
+        assert!(matches!(loader.begin(source).unwrap(), Loading::Reading(_)));
+    }
+
+    #[test]
+    fn what_is_given_up_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a_2x2x2_uint8.raw");
+        std::fs::write(&file, [1; 8]).unwrap();
+        let (named, shipped) =
+            (Source { file: Some(file), layout: None }, Source { file: None, layout: None });
+        let cancel = Cancel::default();
+        assert!(read(&named, &cancel).is_ok());
+        cancel.cancel();
+        for source in [named, shipped] {
+            assert!(read(&source, &cancel).unwrap_err().to_string().contains("given up"));
+        }
+    }
 }

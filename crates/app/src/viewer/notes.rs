@@ -16,6 +16,7 @@ const MOST_FAILURES: usize = 100;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tone {
     Done,
+    Warning,
     Failed,
 }
 
@@ -38,6 +39,11 @@ impl Notes {
     /// Something that has been done.
     pub(crate) fn done(&mut self, text: impl Into<String>) {
         self.push(Tone::Done, text.into());
+    }
+
+    /// Something that has been done otherwise than may be thought.
+    pub(crate) fn warn(&mut self, text: impl Into<String>) {
+        self.push(Tone::Warning, text.into());
     }
 
     /// Something that has failed.

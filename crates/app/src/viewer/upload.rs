@@ -2,7 +2,7 @@
 
 use super::facts::Facts;
 use super::job::Progress;
-use super::loading::{Arrived, Loading, Read, Skipping, Step, planned};
+use super::loading::{Arrived, Loading, Read, Skipping, Step, Turn, planned};
 use crate::failure::Failure;
 use anyhow::{Context as _, anyhow};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
@@ -37,12 +37,13 @@ enum Stage {
 
 impl Upload {
     /// Makes room on the device, and begins to convert.
-    pub(super) fn begin(gpu: &Gpu, read: Read, kernels: SkipKernels) -> Result<Self, Failure> {
+    pub(super) fn begin(gpu: &Gpu, read: Read, turn: Turn, kernels: SkipKernels) -> Result<Self, Failure> {
         let Read { volume, facts, held } = read;
         let (format, plan) = planned(gpu, &volume);
         let upload = VolumeUpload::begin(gpu, &volume, format)?;
         let (sender, slabs) = sync_channel(WAITING);
         let convert = move || {
+            let _turn = turn;
             let is_heard = |slab| sender.send(slab).is_ok();
             // An upload that was given up hears nothing any more.
             let _ = Slab::all_of(&volume, format).all(is_heard);

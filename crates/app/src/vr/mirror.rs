@@ -137,6 +137,7 @@ impl Open {
                 state: session.state(),
                 beholder: &beholder,
                 facts: session.facts(),
+                preset: session.preset(),
                 placement: casting.placement(),
                 progress: session.progress(),
                 notes: &notes,

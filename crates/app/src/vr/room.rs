@@ -382,6 +382,9 @@ impl Room {
         let Some(hands) = &self.hands else { return Ok(()) };
         let stand = *hands.stand();
         let Some((arrived, showing)) = self.arrived.take() else { return Ok(()) };
+        let Some(showing) = self.session.notes.survive(self.session.renewed(showing))? else {
+            return Ok(());
+        };
         let views = self.cast_views(showing.state.stereo.method, eyes, &stand, sizes);
         match self.show(arrived, showing, views) {
             Ok(()) => {

@@ -188,6 +188,7 @@ fn keys_are_held_and_pressed_with_ctrl() {
 {"do": {"save": "before.json"}}
 {"hold": {"key": "Right", "ms": 400}}
 {"press": "Ctrl+S"}
+{"press": "Ctrl+S"}
 {"press": "Ctrl+R"}
 {"wait_for": "rest"}
 {"press": "Ctrl+Q"}
@@ -202,6 +203,95 @@ fn keys_are_held_and_pressed_with_ctrl() {
     };
     assert!(azimuth_deg("view.json") > azimuth_deg("before.json") + 2.0, "{}", azimuth_deg("view.json"));
     assert!(!bench.path("after.json").exists(), "Ctrl Q ends the program");
+    assert!(bench.path("view-2.json").exists() && !bench.path("view-3.json").exists());
+}
+
+fn saved(bench: &Bench, name: &str) -> serde_json::Value {
+    serde_json::from_str(&std::fs::read_to_string(bench.path(name)).unwrap()).unwrap()
+}
+
+#[test]
+fn what_is_edited_while_a_file_is_read_again_stays_and_a_file_that_is_dropped_is_opened() {
+    if !needs_adapter() {
+        return;
+    }
+    let script = r#"
+{"wait_for": "rest"}
+{"do": "reload"}
+{"do": {"zoom": 2.0}}
+{"do": "reload"}
+{"do": {"isovalue": 0.25}}
+{"wait_for": "rest"}
+{"do": {"save": "again.json"}}
+{"drop": "b_8x8x8_uint8.raw"}
+{"do": {"screenshot": "dropped.png"}}
+{"wait_for": "rest"}
+{"do": {"save": "dropped.json"}}
+"#;
+    let bench = Bench::new();
+    std::fs::write(bench.path("b_8x8x8_uint8.raw"), [7; 512]).unwrap();
+    std::fs::write(bench.path("s.jsonl"), script).unwrap();
+    let args = ["view", "sphere.nrrd", "--headless", "--size", "640x360", "--script", "s.jsonl", "--json"];
+    let run = bench.run(&args);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let again = saved(&bench, "again.json");
+    assert_eq!((&again["look"]["isovalue"], &again["file"]), (&0.25.into(), &"sphere.nrrd".into()));
+    let dropped = saved(&bench, "dropped.json");
+    assert_eq!(dropped["file"], "b_8x8x8_uint8.raw");
+    assert!(again["camera"]["distance_m"].as_f64().unwrap() < 1.0, "{again}");
+}
+
+#[test]
+fn edits_of_what_is_not_there_fail_with_what_there_is() {
+    if !needs_adapter() {
+        return;
+    }
+    let edits = [
+        (r#"{"move_face": {"face": 99, "to": 0.5}}"#, "from 0 to 5"),
+        (r#"{"remove_opacity_point": 999}"#, "from 0 to"),
+        (r#"{"zoom": 0}"#, "above 0"),
+    ];
+    let script: String = edits.iter().map(|(edit, _)| format!("{{\"do\": {edit}}}\n")).collect();
+    let run = play(&script, &["--headless"], None).1;
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let failures = run.json()["failures"].as_array().unwrap().clone();
+    assert_eq!(failures.len(), 3);
+    for (failure, (_, says)) in failures.iter().zip(edits) {
+        assert!(failure.as_str().unwrap().contains(says), "{failure}");
+    }
+}
+
+#[test]
+fn voxels_that_are_a_million_times_as_long_as_wide_are_shown_with_a_warning() {
+    let bench = Bench::new();
+    let voxels: Vec<u8> = (0..512).map(|index| (index % 8 * 36) as u8).collect();
+    std::fs::write(bench.path("a_8x8x8_uint8.raw"), voxels).unwrap();
+    let script = r#"
+{"wait_for": "rest"}
+{"press": "H"}
+{"wait_for": "rest"}
+{"do": {"picture": "viewed.png"}}
+"#;
+    std::fs::write(bench.path("s.jsonl"), script).unwrap();
+    for (spacing, is_visible) in
+        [("0.000001,1,1000000", false), ("0.001,1,1000", false), ("1,0.00001,1", true)]
+    {
+        let flags =
+            ["a_8x8x8_uint8.raw", "--raw-size", "8x8x8", "--raw-type", "uint8", "--raw-spacing", spacing];
+        let check = |command: &[&str], output: &str| {
+            let run = bench.run(&[command, &flags].concat());
+            assert_eq!(run.code, 0, "{spacing}: {}", run.stderr);
+            assert!(run.stderr.contains("smallest spacing"), "{spacing}: {}", run.stderr);
+            let lit = lit(&picture(&bench, output));
+            assert!(!is_visible || lit > 200, "{command:?} {spacing}: {lit}");
+        };
+        let render = ["render", "--tf", "ramp:0..1", "--size", "64x48", "-o", "rendered.png", "--backend"];
+        check(&[&render[..], &["cpu"]].concat(), "rendered.png");
+        if needs_adapter() {
+            check(&[&render[..], &["gpu"]].concat(), "rendered.png");
+            check(&["view", "--headless", "--size", "320x200", "--script", "s.jsonl"], "viewed.png");
+        }
+    }
 }
 
 #[test]

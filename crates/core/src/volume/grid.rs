@@ -3,6 +3,10 @@
 use glam::{DAffine3, DMat3, DVec3};
 use thiserror::Error;
 
+/// Most voxel lengths from one corner of a volume to another. More of them would take rays millions of samples of voxels that are a
+/// million times as long as wide; those that scanners make hold thousands.
+pub const MOST_VOXEL_LENGTHS: f64 = 65_536.0;
+
 /// Dimensions and place of a voxel grid.
 ///
 /// Three spaces meet here (see `ARCHITECTURE.md`): **index** space, where voxel (i, j, k) has its *centre* at
@@ -115,9 +119,18 @@ impl Grid {
         DVec3::new(linear.x_axis.length(), linear.y_axis.length(), linear.z_axis.length())
     }
 
-    /// The unit of length for steps and opacities: the smallest spacing, mm.
+    /// The unit of length for steps and opacities, mm: the smallest spacing, but so long that the volume's diagonal holds no more than
+    /// [`MOST_VOXEL_LENGTHS`].
     pub fn voxel_length_mm(&self) -> f64 {
-        self.spacing_mm().min_element()
+        self.spacing_mm().min_element().max(self.diagonal_mm() / MOST_VOXEL_LENGTHS)
+    }
+
+    /// The longest way through the volume, mm.
+    fn diagonal_mm(&self) -> f64 {
+        let patient_from_texture = self.patient_from_texture().matrix3;
+        let corners =
+            [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)];
+        corners.map(|corner| (patient_from_texture * corner).length()).into_iter().fold(0.0, f64::max)
     }
 
     /// Edge lengths of the volume, mm.
@@ -176,6 +189,26 @@ mod tests {
         assert!(matches!(Grid::new([2, 0, 2], DAffine3::IDENTITY), Err(GridError::EmptyDimension(_))));
         let huge = [usize::MAX, 2, 2];
         assert!(matches!(Grid::new(huge, DAffine3::IDENTITY), Err(GridError::TooManyVoxels(_))));
+    }
+
+    #[test]
+    fn a_voxel_length_is_the_smallest_spacing_unless_rays_would_take_forever() {
+        let length = |dims, spacing_mm| Grid::centred(dims, spacing_mm).unwrap().voxel_length_mm();
+        for (dims, spacing_mm) in [
+            ([512, 512, 300], [0.1, 0.1, 3.0]),
+            ([2048, 2048, 2048], [0.1, 1.0, 1.0]),
+            ([1, 1, 3000], [0.05, 1.0, 1.0]),
+            ([8, 8, 8], [1e-3, 1.0, 5.0]),
+        ] {
+            assert_eq!(length(dims, spacing_mm), spacing_mm[0]);
+        }
+        for (dims, spacing_mm) in
+            [([8, 8, 8], [1e-6, 1.0, 1e6]), ([8, 8, 8], [1e-3, 1.0, 1e3]), ([1, 1, 70_000], [1.0; 3])]
+        {
+            let grid = Grid::centred(dims, spacing_mm).unwrap();
+            let diagonal_mm = grid.size_mm().length();
+            assert!((diagonal_mm / grid.voxel_length_mm() - MOST_VOXEL_LENGTHS).abs() < 1.0, "{grid:?}");
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ mod stored_slices;
 mod voxels;
 mod window;
 
-pub use grid::{Grid, GridError};
+pub use grid::{Grid, GridError, MOST_VOXEL_LENGTHS};
 pub use statistics::{Histogram, Statistics};
 pub use storage::{Encoding, StorageKind, StoredVoxels};
 pub(crate) use stored_slices::StoredSlices;

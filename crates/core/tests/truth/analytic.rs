@@ -2,12 +2,12 @@
 
 use crate::scene::*;
 use crate::tolerance;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use wheatstone_core::phantom::{Phantom, SPHERE_RADIUS};
 use wheatstone_core::scene::{Mode, Settings};
 use wheatstone_core::transfer::{OpacityPoint, TransferFunction};
 use wheatstone_core::view::View;
-use wheatstone_core::volume::Volume;
+use wheatstone_core::volume::{MOST_VOXEL_LENGTHS, Volume};
 
 /// Views that meet a volume of about 0.25 m squarely, obliquely, and from within.
 fn views() -> Vec<(&'static str, View)> {
@@ -64,6 +64,24 @@ fn a_homogeneous_slab_transmits_by_beer_and_lambert() {
         }
     }
     assert!(worst > 0.0, "pictures of nothing are no test");
+}
+
+#[test]
+fn voxels_a_million_times_as_long_as_wide_are_cast_in_steps_of_bounded_number() {
+    for spacing_mm in [[1e-3, 1.0, 1e3], [1e-6, 1.0, 1e6], [1e-8, 1.0, 1e8]] {
+        let volume = volume_of([8; 3], spacing_mm, |_| 0.5);
+        let (long_mm, alpha) = (8.0 * spacing_mm[2], 5e-5);
+        let settings = exact_settings(unit_window(), constant_transfer([1.0; 3], alpha));
+        // The units of the world are not to matter.
+        let world_from_patient = DAffine3::from_scale(DVec3::splat(1.0 / long_mm));
+        let view = look(DVec3::Z * 3.0, DVec3::ZERO, DVec3::Y, orthographic(1e-12, [1, 1]), [1, 1]);
+        let cast = cast_at(&volume, world_from_patient, &settings, &view);
+        let samples = cast.samples;
+        assert!((60_000..70_000).contains(&samples), "{spacing_mm:?}: {samples}");
+        let expected = 1.0 - (1.0 - f64::from(alpha)).powf(MOST_VOXEL_LENGTHS);
+        let found = f64::from(color_at(&cast.image, 0, 0)[3]);
+        assert!((found - expected).abs() < 2e-3, "{spacing_mm:?}: {found} is not {expected}");
+    }
 }
 
 /// Opacity along x through the middle of a volume.

@@ -6,8 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 use tempfile::TempDir;
-use wheatstone_core::volume::{Grid, Volume, Voxels};
-use wheatstone_io::{Format, ReadError, Warning, WriteError, read_volume, write_atomically, write_nrrd};
+use wheatstone_core::volume::{Grid, Volume, VoxelType, Voxels};
+use wheatstone_io::{
+    Cancel, Format, RawLayout, ReadError, Warning, WriteError, read_raw_unless, read_volume,
+    read_volume_unless, write_atomically, write_nrrd,
+};
 
 const NRRD_FIELDS: &str = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nencoding: raw\n";
 const META_FIELDS: &str = "ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\nElementType = MET_UCHAR\n";
@@ -179,4 +182,29 @@ fn failed_writing_leaves_the_old_file() {
     let taken = folder.path().join("taken");
     assert!(matches!(write_atomically(&taken, |_| Ok(())), Err(WriteError::Replace { .. })));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+}
+
+#[test]
+fn a_read_that_is_given_up_ends_as_such_whatever_the_format() {
+    let nrrd = [NRRD_FIELDS.as_bytes(), b"\n", &bytes()].concat();
+    let detached = [META_FIELDS.as_bytes(), b"ElementDataFile = a.dat\n"].concat();
+    let cases = [
+        ("a.nii", nifti()),
+        ("a.nii.gz", gzip(&nifti())),
+        ("a.nrrd", nrrd),
+        ("a.mhd", detached),
+        ("a_4x3x2_uint8.raw", bytes()),
+        ("a_4x3x2_uint8.raw.gz", gzip(&bytes())),
+    ];
+    for (name, content) in cases {
+        let (folder, path) = folder_with(name, &content);
+        fs::write(folder.path().join("a.dat"), bytes()).unwrap();
+        let cancel = Cancel::default();
+        assert!(read_volume_unless(&path, &cancel).is_ok(), "{name}");
+        cancel.cancel();
+        let error = read_volume_unless(&path, &cancel).unwrap_err();
+        assert!(matches!(error.problem(), ReadError::Cancelled), "{name}: {error}");
+        let error = read_raw_unless(&path, &RawLayout::new([1; 3], VoxelType::U8), &cancel).unwrap_err();
+        assert!(matches!(error.problem(), ReadError::Cancelled), "{name}: {error}");
+    }
 }

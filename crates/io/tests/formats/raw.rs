@@ -27,6 +27,20 @@ fn every_type_and_byte_order_keeps_its_values() {
 }
 
 #[test]
+fn spacings_that_are_too_different_for_steps_of_the_smallest_are_told() {
+    let warnings = |spacing_mm| {
+        let layout = RawLayout { spacing_mm, ..RawLayout::new([8; 3], VoxelType::U8) };
+        read_raw_bytes(&[1; 512], &layout).unwrap().warnings
+    };
+    assert_eq!(warnings([0.1, 1.0, 100.0]), []);
+    for spacing_mm in [[1e-6, 1.0, 1e6], [1e-3, 1.0, 1e3]] {
+        let told = warnings(spacing_mm);
+        assert!(matches!(told[..], [Warning::StepsLengthened { .. }]), "{told:?}");
+        assert!(told[0].to_string().contains(&format!("{:.3e} mm", spacing_mm[0])), "{}", told[0]);
+    }
+}
+
+#[test]
 fn names_tell_layouts() {
     let layout = |dims, voxel_type| Some(RawLayout::new(dims, voxel_type));
     let from = RawLayout::from_file_name;

@@ -288,7 +288,7 @@ fn clip_boxes_and_planes() {
 
 #[test]
 fn spacings_rotations_and_degenerate_sizes() {
-    let lattices: [(&str, [usize; 3], DAffine3); 9] = [
+    let lattices: [(&str, [usize; 3], DAffine3); 10] = [
         ("anisotropic", [20, 28, 33], spacing([2.0, 1.1, 0.7])),
         ("flat voxels", [30, 30, 9], spacing([0.5, 0.5, 4.0])),
         ("oblique", [27, 24, 30], oblique([1.0, 1.3, 0.8])),
@@ -298,6 +298,7 @@ fn spacings_rotations_and_degenerate_sizes() {
         ("a row", [40, 1, 1], spacing([1.0, 2.0, 2.0])),
         ("one voxel", [1, 1, 1], spacing([1.0; 3])),
         ("two voxels", [1, 2, 1], spacing([1.0; 3])),
+        ("thin slices", [24, 256, 31], spacing([1.0, 5e-4, 1.0])),
     ];
     on_device(|gpu, renderer| {
         let mut report = Report::default();

@@ -1,5 +1,6 @@
 //! The mouse, dragged from one place of the window to another.
 
+use super::step::duration_ms;
 use egui::{Event, Modifiers, PointerButton, Pos2};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -14,6 +15,7 @@ pub(crate) struct Drag {
     pub(crate) from: [f32; 2],
     pub(crate) to: [f32; 2],
     /// How long it takes.
+    #[serde(deserialize_with = "duration_ms")]
     pub(crate) ms: u64,
     #[serde(default)]
     pub(crate) button: Button,
@@ -35,7 +37,7 @@ pub(crate) enum Button {
 
 impl Drag {
     /// The events, and when each happens after the first.
-    pub(crate) fn events(&self) -> Vec<(Duration, Event)> {
+    pub(crate) fn events(&self) -> impl Iterator<Item = (Duration, Event)> + use<> {
         let [from, to] = [self.from, self.to].map(Pos2::from);
         let modifiers = self.modifiers();
         let button = match self.button {
@@ -43,16 +45,24 @@ impl Drag {
             Button::Right => PointerButton::Secondary,
             Button::Middle => PointerButton::Middle,
         };
-        let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
-        let moves = (self.ms / MOVE_MS).max(1);
-        let mut events =
-            vec![(Duration::ZERO, Event::PointerMoved(from)), (Duration::ZERO, press(from, true))];
-        events.extend((1..=moves).map(|index| {
+        let press = move |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+        let moves = self.moves();
+        let pressed = [(Duration::ZERO, Event::PointerMoved(from)), (Duration::ZERO, press(from, true))];
+        let moved = (1..=moves).map(move |index| {
             let at = from + (to - from) * (index as f32 / moves as f32);
             (Duration::from_millis(index * MOVE_MS), Event::PointerMoved(at))
-        }));
-        events.push((Duration::from_millis(moves * MOVE_MS), press(to, false)));
-        events
+        });
+        let released = [(self.duration(), press(to, false))];
+        pressed.into_iter().chain(moved).chain(released)
+    }
+
+    /// From the first event to the last.
+    pub(super) fn duration(&self) -> Duration {
+        Duration::from_millis(self.moves() * MOVE_MS)
+    }
+
+    fn moves(&self) -> u64 {
+        (self.ms / MOVE_MS).max(1)
     }
 
     /// Keys that are held.
@@ -75,7 +85,7 @@ mod tests {
             shift: false,
             ctrl: true,
         };
-        let events = drag.events();
+        let events: Vec<_> = drag.events().collect();
         let places: Vec<Pos2> = events
             .iter()
             .filter_map(|(_, event)| if let Event::PointerMoved(place) = event { Some(*place) } else { None })

@@ -2,8 +2,8 @@
 
 use super::step::{Goal, Step};
 use crate::viewer::command::Command;
+use crate::viewer::state::Edit;
 use egui::{Event, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, Vec2};
-use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -21,6 +21,8 @@ pub(crate) struct Status {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Happening {
     Command(Command),
+    /// An edit of some point of the transfer function, whichever it has.
+    EditOfSome(Edit),
     Event(Event),
     Drop(PathBuf),
     Resize([u32; 2]),
@@ -39,8 +41,9 @@ pub(crate) struct Player {
     next: Option<Step>,
     /// When the next step is due.
     at: Instant,
-    /// What has begun and goes on.
-    events: VecDeque<Due>,
+    /// What is left of the step that has begun, and what of it is due next.
+    events: Box<dyn Iterator<Item = Due>>,
+    next_event: Option<Due>,
     /// What is shown has to be looked at anew before anything is waited for.
     has_acted: bool,
 }
@@ -49,7 +52,14 @@ impl Player {
     pub(crate) fn new(steps: impl Iterator<Item = Step> + 'static) -> Self {
         let mut steps: Box<dyn Iterator<Item = Step>> = Box::new(steps);
         let next = steps.next();
-        Self { steps, next, at: Instant::now(), events: VecDeque::new(), has_acted: false }
+        Self {
+            steps,
+            next,
+            at: Instant::now(),
+            events: Box::new(std::iter::empty()),
+            next_event: None,
+            has_acted: false,
+        }
     }
 
     /// Ends the program when everything is played and at rest.
@@ -66,11 +76,12 @@ impl Player {
         let mut due = Vec::new();
         self.has_acted = false;
         loop {
-            while let Some(event) = self.events.pop_front_if(|event| event.at <= now) {
+            while let Some(event) = self.next_event.take_if(|event| event.at <= now) {
                 due.push(event);
                 self.has_acted = true;
+                self.advance();
             }
-            if !self.events.is_empty() || self.at > now {
+            if self.next_event.is_some() || self.at > now {
                 return Ok(due);
             }
             let Some(step) = self.next.take() else { return Ok(due) };
@@ -88,18 +99,18 @@ impl Player {
                 self.next = self.steps.next();
                 continue;
             }
-            let has_events = due.iter().any(|due| matches!(due.happening, Happening::Event(_)));
-            if has_events && !step.makes_events() {
+            let has_input = due.iter().any(|due| due.happening.is_input());
+            if has_input && !step.makes_input() {
                 // The panels take events in after all else that is due.
                 self.next = Some(step);
                 return Ok(due);
             }
-            let is_capture = matches!(step, Step::Do(Command::Screenshot(_)));
+            let is_capture = matches!(step, Step::Do(Command::Screenshot(_) | Command::ScreenshotNew(_)));
             self.begin(step);
             self.next = self.steps.next();
             if is_capture {
                 // What follows is not to be seen on it.
-                due.extend(self.events.drain(..));
+                due.extend(self.next_event.take());
                 return Ok(due);
             }
         }
@@ -107,7 +118,7 @@ impl Player {
 
     /// When something is due next, as far as that is known: what is waited for may come at any time.
     pub(crate) fn next_at(&self, status: Status) -> Option<Instant> {
-        match (self.events.front(), &self.next) {
+        match (&self.next_event, &self.next) {
             (Some(event), _) => Some(event.at),
             (None, Some(Step::WaitFor(goal))) if !goal.is_reached(status) => Some(self.at + PATIENCE),
             (None, Some(_)) => Some(self.at),
@@ -116,20 +127,19 @@ impl Player {
     }
 
     fn begin(&mut self, step: Step) {
-        let happenings: Vec<(Duration, Happening)> = match step {
+        let happenings: Happenings = match step {
             Step::WaitMs(ms) => {
                 self.at += Duration::from_millis(ms);
-                Vec::new()
+                at_once([])
             }
-            Step::WaitFor(_) => Vec::new(),
+            Step::WaitFor(_) => at_once([]),
             Step::Do(command) => at_once([Happening::Command(command)]),
+            Step::DoToSome(edit) => at_once([Happening::EditOfSome(edit)]),
             Step::Drag(drag) => {
-                let events = drag.events();
-                let end = events.last().map_or(Duration::ZERO, |(after, _)| *after);
                 let held = (Duration::ZERO, Event::ModifiersChanged(drag.modifiers()));
-                let released = (end, Event::ModifiersChanged(Modifiers::NONE));
-                let all = std::iter::once(held).chain(events).chain([released]);
-                all.map(|(after, event)| (after, Happening::Event(event))).collect()
+                let released = (drag.duration(), Event::ModifiersChanged(Modifiers::NONE));
+                let all = std::iter::once(held).chain(drag.events()).chain([released]);
+                Box::new(all.map(|(after, event)| (after, Happening::Event(event))))
             }
             Step::Press(chord) => {
                 let [held, down] = chord.down().map(Happening::Event);
@@ -138,9 +148,9 @@ impl Player {
             }
             Step::Hold { key, ms } => {
                 let after = |ms, events: [Event; 2]| {
-                    events.map(|event| (Duration::from_millis(ms), Happening::Event(event)))
+                    events.map(|event| (Duration::from_millis(ms), Happening::Event(event))).into_iter()
                 };
-                [after(0, key.down()), after(ms, key.up())].concat()
+                Box::new(after(0, key.down()).chain(after(ms, key.up())))
             }
             Step::Scroll { at, points } => at_once([
                 Happening::Event(Event::PointerMoved(at.into())),
@@ -156,19 +166,37 @@ impl Player {
             Step::Resize(size) => at_once([Happening::Resize(size)]),
         };
         let begun = self.at;
-        for (after, happening) in happenings {
-            self.at = begun + after;
-            self.events.push_back(Due { at: self.at, happening });
+        self.events =
+            Box::new(happenings.map(move |(after, happening)| Due { at: begun + after, happening }));
+        self.advance();
+    }
+
+    fn advance(&mut self) {
+        self.next_event = self.events.next();
+        if let Some(event) = &self.next_event {
+            self.at = event.at;
         }
     }
 }
 
 impl Step {
-    fn makes_events(&self) -> bool {
+    fn makes_input(&self) -> bool {
         matches!(
             self,
-            Self::Drag(_) | Self::Press(_) | Self::Hold { .. } | Self::Scroll { .. } | Self::WaitMs(_)
+            Self::Drag(_)
+                | Self::Press(_)
+                | Self::Hold { .. }
+                | Self::Scroll { .. }
+                | Self::Drop(_)
+                | Self::WaitMs(_)
         )
+    }
+}
+
+impl Happening {
+    /// Whether it comes in as from a window.
+    fn is_input(&self) -> bool {
+        matches!(self, Self::Event(_) | Self::Drop(_))
     }
 }
 
@@ -181,15 +209,18 @@ impl Goal {
     }
 }
 
-fn at_once<const N: usize>(happenings: [Happening; N]) -> Vec<(Duration, Happening)> {
-    happenings.into_iter().map(|happening| (Duration::ZERO, happening)).collect()
+/// What comes of a step, and when after its beginning.
+type Happenings = Box<dyn Iterator<Item = (Duration, Happening)>>;
+
+fn at_once<const N: usize>(happenings: [Happening; N]) -> Happenings {
+    Box::new(happenings.into_iter().map(|happening| (Duration::ZERO, happening)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::chord::Chord;
+    use super::super::drag::{Button, Drag};
     use super::*;
-    use crate::viewer::state::Edit;
 
     const READY: Status = Status { is_loading: false, is_at_rest: true };
 
@@ -247,6 +278,33 @@ mod tests {
         assert!(player.due(begun + Duration::from_millis(299), READY).unwrap().is_empty());
         let up = player.due(begun + Duration::from_millis(300), READY).unwrap();
         assert_eq!(events(up), key.up().map(Happening::Event));
+    }
+
+    #[test]
+    fn a_drag_of_an_hour_is_made_move_by_move() {
+        let (from, to) = ([0.0; 2], [100.0; 2]);
+        let drag = Drag { from, to, ms: 3_600_000, button: Button::Left, shift: false, ctrl: false };
+        let mut player = Player::new([Step::Drag(drag), Step::Do(Command::Quit)].into_iter());
+        let begun = player.at;
+        assert_eq!(player.due(begun, READY).unwrap().len(), 3, "keys, place, press");
+        assert_eq!(player.due(begun + Duration::from_millis(16), READY).unwrap().len(), 2);
+        assert_eq!(player.next_at(READY), Some(begun + Duration::from_millis(24)));
+        let end = begun + Duration::from_secs(3600);
+        let rest = player.due(end, READY).unwrap();
+        assert_eq!(rest.len(), 450_000 - 2 + 2, "moves, release, keys");
+        assert_eq!(player.due(end, READY).unwrap()[0].happening, Happening::Command(Command::Quit));
+    }
+
+    #[test]
+    fn what_follows_a_file_that_is_dropped_is_done_after_it() {
+        let mut player = Player::new([Step::Drop("a.nrrd".into()), Step::Do(Command::Quit)].into_iter());
+        let now = player.at;
+        let due = player.due(now, READY).unwrap();
+        assert_eq!(
+            due.into_iter().map(|due| due.happening).collect::<Vec<_>>(),
+            [Happening::Drop("a.nrrd".into())]
+        );
+        assert_eq!(player.due(now, READY).unwrap()[0].happening, Happening::Command(Command::Quit));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::drag::{Button, Drag};
 use super::step::{Goal, Step};
 use crate::look::ModeName;
 use crate::viewer::command::Command;
-use crate::viewer::state::{Arrangement, Edit, EyeMethod, Face, Plane, WarpName};
+use crate::viewer::state::{Arrangement, Edit, EyeMethod, Face, Plane, State, WarpName};
 use egui::Key;
 use fastrand::Rng;
 use glam::DVec3;
@@ -45,7 +45,12 @@ fn step(rng: &mut Rng) -> Step {
         }
         12 => Step::Scroll { at: place(rng), points: (rng.f32() - 0.5) * 200.0 },
         13 => Step::Resize([rng.u32(200..1200), rng.u32(150..900)]),
-        _ => Step::Do(command(rng)),
+        _ => match command(rng) {
+            Command::Edit(edit @ (Edit::MoveOpacityPoint { .. } | Edit::RemoveOpacityPoint(_))) => {
+                Step::DoToSome(edit)
+            }
+            command => Step::Do(command),
+        },
     }
 }
 
@@ -101,10 +106,21 @@ fn command(rng: &mut Rng) -> Command {
     edit.into()
 }
 
+/// An edit of a point of the transfer function, of one that there is: the numbers of points are counted through again and again. The last
+/// one is kept.
+pub(crate) fn of_what_exists(edit: &Edit, state: &State) -> Edit {
+    let points = state.transfer.opacity.len();
+    match *edit {
+        Edit::MoveOpacityPoint { index, to } => Edit::MoveOpacityPoint { index: index % points, to },
+        Edit::RemoveOpacityPoint(index) if points > 1 => Edit::RemoveOpacityPoint(index % points),
+        Edit::RemoveOpacityPoint(_) => Edit::AddOpacityPoint([0.5, 0.5]),
+        ref other => other.clone(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewer::state::State;
 
     #[test]
     fn random_edits_leave_a_state_that_is_saved_and_loaded() {
@@ -112,7 +128,7 @@ mod tests {
         let mut state = State::default();
         for _ in 0..3000 {
             if let Command::Edit(edit) = command(&mut rng) {
-                state.apply(&edit).unwrap();
+                state.apply(&of_what_exists(&edit, &state)).unwrap();
             }
         }
         assert_eq!(State::from_json(&state.to_json().unwrap()).unwrap(), state);

@@ -5,28 +5,40 @@ use super::drag::Drag;
 use crate::failure::Failure;
 use crate::text_file::read_text_file;
 use crate::viewer::command::Command;
-use serde::{Deserialize, Serialize};
+use crate::viewer::state::Edit;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Largest script that is read, bytes.
 const MOST_BYTES: u64 = 16 << 20;
+
+/// Longest that one step lasts: an hour.
+const LONGEST_MS: u64 = 3_600_000;
 
 /// One step; the next one follows when it is done.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Step {
     /// Waits so many milliseconds.
-    WaitMs(u64),
+    WaitMs(#[serde(deserialize_with = "duration_ms")] u64),
     /// Waits for something, at most two minutes.
     WaitFor(Goal),
     /// Does a command, as a panel would.
     Do(Command),
+    /// Does an edit of some point of the transfer function, whichever it has then.
+    #[serde(skip)]
+    DoToSome(Edit),
     /// Drags the mouse.
     Drag(Drag),
     /// Presses a key and releases it at once.
     Press(Chord),
     /// Holds a key for some time.
-    Hold { key: Chord, ms: u64 },
+    Hold {
+        key: Chord,
+        #[serde(deserialize_with = "duration_ms")]
+        ms: u64,
+    },
     /// Turns the wheel by so many points at a place of the window (points).
     Scroll { at: [f32; 2], points: f32 },
     /// Drops a file.
@@ -50,6 +62,16 @@ pub(crate) fn read_steps(path: &Path) -> Result<Vec<Step>, Failure> {
     read_text_file(path, MOST_BYTES, "a script", parse)
 }
 
+/// Reads a time, milliseconds.
+pub(super) fn duration_ms<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+    let ms = u64::deserialize(deserializer)?;
+    if ms <= LONGEST_MS {
+        Ok(ms)
+    } else {
+        Err(D::Error::custom(format!("{ms} ms are too long: at most {LONGEST_MS}, an hour")))
+    }
+}
+
 fn parse(text: &str) -> Result<Vec<Step>, String> {
     let is_step = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
     let step = |(number, line): (usize, &str)| {
@@ -61,7 +83,6 @@ fn parse(text: &str) -> Result<Vec<Step>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewer::state::Edit;
 
     #[test]
     fn a_script_is_a_step_a_line() {
@@ -82,11 +103,27 @@ mod tests {
             "{\"wait\": 5}",
             "{\"do\": {\"zoom\": \"x\"}}",
             "{\"press\": \"Any\"}",
+            "{\"drag\": {\"from\": [0, 0], \"to\": [1, 1], \"ms\": 18446744073709551615}}",
             "{",
             "7",
         ] {
             let error = parse(&format!("{{\"wait_ms\": 5}}\n{bad}")).unwrap_err();
             assert!(error.starts_with("line 2:"), "{error}");
+        }
+    }
+
+    #[test]
+    fn no_step_lasts_for_more_than_an_hour() {
+        for step in [
+            "{\"wait_ms\": TIME}",
+            "{\"hold\": {\"key\": \"W\", \"ms\": TIME}}",
+            "{\"drag\": {\"from\": [0, 0], \"to\": [1, 1], \"ms\": TIME}}",
+        ] {
+            assert_eq!(parse(&step.replace("TIME", "3600000")).unwrap().len(), 1);
+            for ms in ["3600001", "200000000000", "18446744073709551615"] {
+                let error = parse(&step.replace("TIME", ms)).unwrap_err();
+                assert!(error.contains(ms) && error.contains("an hour"), "{error}");
+            }
         }
     }
 }

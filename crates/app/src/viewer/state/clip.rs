@@ -44,12 +44,14 @@ impl Default for Clip {
 
 impl Clip {
     /// Moves one face of the box (0–2: low x, y, z; 3–5: high) as far as the volume and the opposite face allow.
-    pub(super) fn move_face(&mut self, face: usize, to: f64) {
-        if face < 6 {
-            let mut clip = self.scene();
-            clip.move_face(face, to);
-            (self.box_lo, self.box_hi) = (clip.box_lo, clip.box_hi);
+    pub(super) fn move_face(&mut self, face: usize, to: f64) -> Result<(), String> {
+        if face >= 6 {
+            return Err(format!("face is {face}: must be from 0 to 5"));
         }
+        let mut clip = self.scene();
+        clip.move_face(face, to);
+        (self.box_lo, self.box_hi) = (clip.box_lo, clip.box_hi);
+        Ok(())
     }
 
     /// What the casters take.
@@ -84,12 +86,12 @@ mod tests {
     #[test]
     fn faces_stop_at_each_other_and_at_the_volume() {
         let mut clip = Clip::default();
-        clip.move_face(4, 0.3);
+        clip.move_face(4, 0.3).unwrap();
         assert_eq!(clip.box_hi, DVec3::new(1.0, 0.3, 1.0));
-        clip.move_face(1, 0.9);
+        clip.move_face(1, 0.9).unwrap();
         assert_eq!(clip.box_lo.y, 0.3 - SceneClip::THINNEST);
-        clip.move_face(1, -5.0);
-        clip.move_face(4, 7.0);
+        clip.move_face(1, -5.0).unwrap();
+        clip.move_face(4, 7.0).unwrap();
         assert_eq!(clip, Clip::default());
         assert!(clip.check().is_ok());
     }
@@ -97,8 +99,8 @@ mod tests {
     #[test]
     fn a_face_pushed_into_the_last_slice_stops_there() {
         let mut clip = Clip::default();
-        clip.move_face(3, -1.0);
-        clip.move_face(0, 1.0);
+        clip.move_face(3, -1.0).unwrap();
+        clip.move_face(0, 1.0).unwrap();
         assert!(clip.check().is_ok(), "{clip:?}");
     }
 }

@@ -2,8 +2,8 @@
 
 use super::look::shading_text;
 use super::{
-    Arrangement, Calibration, Camera, Clip, EyeMethod, Face, Layers, Plane, ShownDisplay, State, Transfer,
-    WarpName,
+    Arrangement, Calibration, Camera, Clip, EyeMethod, Face, Layers, Plane, ShownDisplay, State, StateError,
+    Transfer, WarpName, of_part,
 };
 use crate::camera::Up;
 use crate::look::ModeName;
@@ -106,12 +106,18 @@ pub(crate) enum Edit {
 
 impl Edit {
     /// Changes the state as far as it can; the caller checks what comes out.
-    pub(super) fn apply(&self, state: &mut State) {
+    ///
+    /// # Errors
+    /// What is to be changed is not there.
+    pub(super) fn apply(&self, state: &mut State) -> Result<(), StateError> {
         let (camera, look, transfer) = (&mut state.camera, &mut state.look, &mut state.transfer);
         match *self {
             Self::Orbit { right_deg, up_deg } => camera.orbit(right_deg, up_deg),
             Self::Pan { right, up } => camera.pan(right, up),
-            Self::Zoom(factor) => camera.zoom(factor),
+            Self::Zoom(factor) if factor > 0.0 => camera.zoom(factor),
+            Self::Zoom(factor) => {
+                return Err(of_part("camera", format!("zoom is {factor}: must be above 0")));
+            }
             Self::Fly { right_m, up_m, forward_m } => camera.fly(right_m, up_m, forward_m),
             Self::Turn { right_deg, up_deg } => camera.turn(right_deg, up_deg),
             Self::Face(face) => camera.face(face),
@@ -127,13 +133,15 @@ impl Edit {
             Self::Transfer(ref whole) => transfer.clone_from(whole),
             Self::WindowLevel { shift, stretch } => transfer.window_level(shift, stretch),
             Self::Window(window) => transfer.window = window,
-            Self::MoveOpacityPoint { index, to } => transfer.move_opacity(index, to),
+            Self::MoveOpacityPoint { index, to } => of_transfer(transfer.move_opacity(index, to))?,
             Self::AddOpacityPoint(point) => transfer.add_opacity(point),
-            Self::RemoveOpacityPoint(index) => transfer.remove_opacity(index),
-            Self::SetColorPoint { index, to } => transfer.set_color(index, to),
+            Self::RemoveOpacityPoint(index) => of_transfer(transfer.remove_opacity(index))?,
+            Self::SetColorPoint { index, to } => of_transfer(transfer.set_color(index, to))?,
             Self::AddColorPoint(at) => transfer.add_color(at),
-            Self::RemoveColorPoint(index) => transfer.remove_color(index),
-            Self::MoveFace { face, to } => state.clip.move_face(face, to),
+            Self::RemoveColorPoint(index) => of_transfer(transfer.remove_color(index))?,
+            Self::MoveFace { face, to } => {
+                state.clip.move_face(face, to).map_err(|reason| of_part("clip", reason))?;
+            }
             Self::ClipPlane(plane) => state.clip.plane = plane,
             Self::Clip(clip) => state.clip = clip,
             Self::ClipHandles(has_handles) => state.clip.has_handles = has_handles,
@@ -154,5 +162,10 @@ impl Edit {
             Self::Layers(ref layers) => state.pace.layers.clone_from(layers),
             Self::Refresh(refresh_ms) => state.pace.refresh_ms = refresh_ms,
         }
+        Ok(())
     }
+}
+
+fn of_transfer(edited: Result<(), String>) -> Result<(), StateError> {
+    edited.map_err(|reason| of_part("transfer", reason))
 }

@@ -108,7 +108,7 @@ impl State {
     /// Does an edit, or leaves everything as it was.
     pub(crate) fn apply(&mut self, edit: &Edit) -> Result<(), StateError> {
         let mut edited = self.clone();
-        edit.apply(&mut edited);
+        edit.apply(&mut edited)?;
         edited.check()?;
         *self = edited;
         Ok(())
@@ -239,6 +239,28 @@ mod tests {
         assert!(State::from_json(&view.to_string()).is_ok());
         view["light_field"]["display"] = "agus-2008".into();
         assert!(State::from_json(&view.to_string()).unwrap_err().to_string().contains("has projectors"));
+    }
+
+    #[test]
+    fn edits_of_what_is_not_there_are_refused_with_what_there_is() {
+        let state = edited();
+        let says = |edit: Edit, what: &str| {
+            let mut after = state.clone();
+            let error = after.apply(&edit).unwrap_err().to_string();
+            assert!(error.contains(what), "{edit:?}: {error}");
+            assert_eq!(after, state);
+        };
+        let (points, colors) = (state.transfer.opacity.len(), state.transfer.color.len());
+        says(Edit::MoveOpacityPoint { index: points, to: [0.5; 2] }, "must be from 0 to 2");
+        says(Edit::RemoveOpacityPoint(999), "999: must be from 0 to 2");
+        says(Edit::SetColorPoint { index: colors, to: [0.5; 4] }, "must be from 0 to 1");
+        says(Edit::RemoveColorPoint(usize::MAX), "must be from 0 to 1");
+        says(Edit::MoveFace { face: 6, to: 0.5 }, "must be from 0 to 5");
+        says(Edit::Zoom(0.0), "must be above 0");
+        says(Edit::Zoom(-2.0), "must be above 0");
+        let mut lonely = state.clone();
+        (1..points).for_each(|_| lonely.apply(&Edit::RemoveOpacityPoint(0)).unwrap());
+        assert!(lonely.apply(&Edit::RemoveOpacityPoint(0)).unwrap_err().to_string().contains("last point"));
     }
 
     #[test]

@@ -69,19 +69,17 @@ impl Transfer {
     }
 
     /// Moves an opacity point as far as its neighbours allow.
-    pub(super) fn move_opacity(&mut self, index: usize, [at, alpha]: [f32; 2]) {
+    pub(super) fn move_opacity(&mut self, index: usize, [at, alpha]: [f32; 2]) -> Result<(), String> {
         let at = between_neighbours(&self.opacity, index, at);
-        if let Some(point) = self.opacity.get_mut(index) {
-            *point = [at, alpha.clamp(0.0, 1.0)];
-        }
+        *point(&mut self.opacity, index)? = [at, alpha.clamp(0.0, 1.0)];
+        Ok(())
     }
 
     /// Moves a colour point as far as its neighbours allow, and colours it.
-    pub(super) fn set_color(&mut self, index: usize, [at, r, g, b]: [f32; 4]) {
+    pub(super) fn set_color(&mut self, index: usize, [at, r, g, b]: [f32; 4]) -> Result<(), String> {
         let at = between_neighbours(&self.color, index, at);
-        if let Some(point) = self.color.get_mut(index) {
-            *point = [at, r, g, b];
-        }
+        *point(&mut self.color, index)? = [at, r, g, b];
+        Ok(())
     }
 
     pub(super) fn add_opacity(&mut self, point: [f32; 2]) {
@@ -96,12 +94,12 @@ impl Transfer {
         }
     }
 
-    pub(super) fn remove_opacity(&mut self, index: usize) {
-        remove(&mut self.opacity, index);
+    pub(super) fn remove_opacity(&mut self, index: usize) -> Result<(), String> {
+        remove(&mut self.opacity, index)
     }
 
-    pub(super) fn remove_color(&mut self, index: usize) {
-        remove(&mut self.color, index);
+    pub(super) fn remove_color(&mut self, index: usize) -> Result<(), String> {
+        remove(&mut self.color, index)
     }
 
     pub(super) fn check(&self) -> Result<(), String> {
@@ -117,7 +115,7 @@ impl Transfer {
 /// A position of a point that keeps the order.
 fn between_neighbours<const N: usize>(points: &[[f32; N]], index: usize, at: f32) -> f32 {
     let lowest = index.checked_sub(1).and_then(|before| points.get(before)).map_or(0.0, |point| point[0]);
-    let highest = points.get(index + 1).map_or(1.0, |point| point[0]);
+    let highest = points.get(index.saturating_add(1)).map_or(1.0, |point| point[0]);
     at.min(highest).max(lowest)
 }
 
@@ -126,11 +124,20 @@ fn insert<const N: usize>(points: &mut Vec<[f32; N]>, point: [f32; N]) {
     points.insert(index, point);
 }
 
+/// A point by its number.
+fn point<const N: usize>(points: &mut [[f32; N]], index: usize) -> Result<&mut [f32; N], String> {
+    let last = points.len().saturating_sub(1);
+    points.get_mut(index).ok_or_else(|| format!("point {index}: must be from 0 to {last}"))
+}
+
 /// Takes a point away, but not the last one.
-fn remove<const N: usize>(points: &mut Vec<[f32; N]>, index: usize) {
-    if points.len() > 1 && index < points.len() {
-        points.remove(index);
+fn remove<const N: usize>(points: &mut Vec<[f32; N]>, index: usize) -> Result<(), String> {
+    point(points, index)?;
+    if points.len() == 1 {
+        return Err("the last point cannot be removed: a function has at least one".to_owned());
     }
+    points.remove(index);
+    Ok(())
 }
 
 #[cfg(test)]
@@ -172,15 +179,23 @@ mod tests {
         ) {
             let mut transfer = Transfer::default();
             for (kind, index, at, alpha) in edits {
-                match kind {
+                let before = transfer.clone();
+                let edited = match kind {
                     0 => transfer.move_opacity(index, [at, alpha]),
                     1 => transfer.set_color(index, [at, 0.5, 0.25, 1.0]),
-                    2 => transfer.add_opacity([at.clamp(0.0, 1.0), alpha.clamp(0.0, 1.0)]),
-                    3 => transfer.add_color(at.clamp(0.0, 1.0)),
-                    4 => transfer.remove_opacity(index),
-                    _ => transfer.remove_color(index),
-                }
+                    2 => transfer.remove_opacity(index),
+                    3 => transfer.remove_color(index),
+                    4 => {
+                        transfer.add_opacity([at.clamp(0.0, 1.0), alpha.clamp(0.0, 1.0)]);
+                        Ok(())
+                    }
+                    _ => {
+                        transfer.add_color(at.clamp(0.0, 1.0));
+                        Ok(())
+                    }
+                };
                 prop_assert_eq!(transfer.check(), Ok(()));
+                prop_assert!(edited.is_ok() || transfer == before);
             }
         }
     }

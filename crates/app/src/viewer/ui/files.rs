@@ -1,5 +1,6 @@
 //! The volume, and files to open and to write.
 
+use super::theme::ACCENT;
 use super::{Asked, Beholder, Shown};
 use crate::viewer::command::Command;
 use egui::{ProgressBar, RichText, TextEdit, Ui};
@@ -39,6 +40,9 @@ pub(super) fn show(fields: &mut Fields, ui: &mut Ui, shown: &Shown<'_>, asked: &
                 size.z,
                 facts.grid.orientation_letters()
             ));
+            for warning in &facts.warnings {
+                ui.colored_label(ACCENT, warning);
+            }
         }
         None => {
             ui.label(RichText::new("no volume yet").size(15.0));

@@ -44,6 +44,8 @@ pub(crate) struct Shown<'a> {
     pub(crate) state: &'a State,
     pub(crate) beholder: &'a Beholder,
     pub(crate) facts: Option<&'a Facts>,
+    /// Name of the transfer function, if it has one.
+    pub(crate) preset: Option<&'a str>,
     pub(crate) placement: Option<Placement>,
     pub(crate) progress: Option<Progress>,
     pub(crate) notes: &'a [Note],
@@ -152,7 +154,7 @@ impl Asked {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewer::script::{Button, Drag};
+    use crate::viewer::script::{Button, Drag, Dropped};
     use crate::viewer::state::Plane;
     use egui::{
         Context, Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, Pos2, RawInput, Shape, TouchPhase,
@@ -167,6 +169,8 @@ mod tests {
         state: State,
         picture: Rect,
         texts: Vec<String>,
+        /// What has been asked for but edits.
+        commands: Vec<Command>,
     }
 
     /// What comes of events if so many come with each refresh.
@@ -186,7 +190,7 @@ mod tests {
         let grid = Grid::centred([8, 8, 8], [1.0; 3]).unwrap();
         let up = state.look.up.direction();
         let placement = Placement::of_grid(&grid, wheatstone_core::view::world_from_patient(&grid, up));
-        let (mut picture, mut texts) = (Rect::NOTHING, Vec::new());
+        let (mut picture, mut texts, mut commands) = (Rect::NOTHING, Vec::new(), Vec::new());
         let mut refresh = |number: usize, events: &[Event]| {
             let input = RawInput {
                 screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
@@ -200,6 +204,7 @@ mod tests {
                     state: &state,
                     beholder,
                     facts: None,
+                    preset: None,
                     placement: Some(placement),
                     progress: None,
                     notes: &[],
@@ -210,8 +215,10 @@ mod tests {
                 let pass = desk.show(ui, &shown);
                 picture = pass.picture;
                 for command in pass.commands {
-                    let Command::Edit(edit) = command else { panic!("{command:?}") };
-                    state.apply(&edit).unwrap();
+                    match command {
+                        Command::Edit(edit) => state.apply(&edit).unwrap(),
+                        other => commands.push(other),
+                    }
                 }
             });
             texts = output.shapes.iter().filter_map(|clipped| text(&clipped.shape)).collect();
@@ -219,7 +226,7 @@ mod tests {
         };
         (0..3).for_each(|number| refresh(number, &[]));
         events.chunks(per_refresh).enumerate().for_each(|(number, events)| refresh(3 + number, events));
-        Played { state, picture, texts }
+        Played { state, picture, texts, commands }
     }
 
     fn text(shape: &Shape) -> Option<String> {
@@ -235,11 +242,12 @@ mod tests {
 
     fn drag(from: [f32; 2], to: [f32; 2], button: Button, ctrl: bool) -> Vec<Event> {
         let drag = Drag { from, to, ms: 400, button, shift: false, ctrl };
-        drag.events().into_iter().map(|(_, event)| event).collect()
+        drag.events().map(|(_, event)| event).collect()
     }
 
     fn assert_same_however_many_at_a_time(state: &State, events: &[Event]) -> State {
         let one_by_one = after(state, events, 1);
+        assert!(play(&Beholder::Camera, state.clone(), events, 1).commands.is_empty());
         assert_ne!(&one_by_one, state);
         for per_refresh in [2, 5, 17, events.len()] {
             assert_eq!(after(state, events, per_refresh), one_by_one, "{per_refresh} at a time");
@@ -294,6 +302,93 @@ mod tests {
         assert!(moved.camera == state.camera && moved.clip.plane != state.clip.plane);
     }
 
+    fn press(key: Key, modifiers: Modifiers) -> Event {
+        Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
+    }
+
+    #[test]
+    fn keys_that_are_held_act_once_but_for_those_that_raise_and_lower() {
+        let held = |key, modifiers| {
+            let events: Vec<Event> = std::iter::once(Event::ModifiersChanged(modifiers))
+                .chain((0..6).map(|_| press(key, modifiers)))
+                .collect();
+            play(&Beholder::Camera, State::default(), &events, 1)
+        };
+        assert_eq!(held(Key::R, Modifiers::COMMAND).commands, [Command::Reload]);
+        assert_eq!(held(Key::S, Modifiers::COMMAND).commands, [Command::SaveNew("view.json".into())]);
+        assert_eq!(
+            held(Key::F12, Modifiers::NONE).commands,
+            [Command::ScreenshotNew("screenshot.png".into())]
+        );
+        let picture = held(Key::H, Modifiers::NONE).picture;
+        assert_eq!(picture.width(), SIZE.x, "hidden once, not shown again");
+        let raised = held(Key::I, Modifiers::NONE).state.look.isovalue - State::default().look.isovalue;
+        assert!((raised - 0.12).abs() < 1e-9, "{raised}");
+    }
+
+    #[test]
+    fn the_list_of_keys_scrolls_to_its_end_in_a_small_window() {
+        let opened = [press(Key::Questionmark, Modifiers::NONE)];
+        let idle = || std::iter::repeat_n(Event::PointerMoved(egui::pos2(250.0, 251.0)), 200);
+        let end = |events: &[Event]| {
+            let events: Vec<Event> = events.iter().cloned().chain(idle()).collect();
+            let texts = play(&Beholder::Camera, State::default(), &events, 1).texts;
+            assert!(texts.iter().any(|text| text == "Keys and mouse"), "{texts:?}");
+            texts.iter().any(|text| text == "remove a point")
+        };
+        let wheel = |_| {
+            [
+                Event::PointerMoved(egui::pos2(250.0, 250.0)),
+                Event::MouseWheel {
+                    unit: MouseWheelUnit::Point,
+                    delta: egui::vec2(0.0, -400.0),
+                    phase: TouchPhase::Move,
+                    source: MouseWheelSource::Wheel,
+                    modifiers: Modifiers::NONE,
+                },
+            ]
+        };
+        let scrolled: Vec<Event> = opened.iter().cloned().chain((0..4).flat_map(wheel)).collect();
+        assert!(!end(&opened), "it is longer than the window");
+        assert!(end(&scrolled), "scrolled to its end");
+    }
+
+    #[test]
+    fn a_file_that_is_dropped_is_opened_once_whatever_comes_with_it() {
+        let (context, mut desk, timings) = (Context::default(), Desk::new(), Timings::default());
+        let state = State::default();
+        let mut commands = Vec::new();
+        for hides_panels in [false, true] {
+            desk.hides_panels = hides_panels;
+            let file = Dropped::new(std::path::Path::new("/a/b.nrrd"));
+            let input = RawInput {
+                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, SIZE)),
+                dropped_files: vec![std::sync::Arc::new(file)],
+                events: drag([60.0, 150.0], [160.0, 200.0], Button::Left, false),
+                ..RawInput::default()
+            };
+            let output = run_passes(&context, input, |ui| {
+                let shown = Shown {
+                    state: &state,
+                    beholder: &Beholder::Camera,
+                    facts: None,
+                    preset: None,
+                    placement: None,
+                    progress: None,
+                    notes: &[],
+                    timings: &timings,
+                    device: "",
+                    quality: "",
+                };
+                let asked = desk.show(ui, &shown).commands;
+                commands.extend(asked.into_iter().filter(|asked| !matches!(asked, Command::Edit(_))));
+            });
+            output.drop_without_applying_deltas();
+        }
+        let opened = Command::Drop(vec!["/a/b.nrrd".into()]);
+        assert_eq!(commands, [opened.clone(), opened]);
+    }
+
     /// Before both eyes of a headset there is what the first camera sees.
     fn headset() -> Beholder {
         let view = State::default().camera.view([640, 720]).unwrap();
@@ -306,13 +401,6 @@ mod tests {
         let after = |events: &[Event]| play(&headset(), state.clone(), events, 1).state;
         let windowed = after(&drag([200.0, 150.0], [250.0, 150.0], Button::Left, false));
         assert!(windowed.transfer.window != state.transfer.window && windowed.camera == state.camera);
-        let press = |key| Event::Key {
-            key,
-            physical_key: None,
-            pressed: true,
-            repeat: false,
-            modifiers: Modifiers::NONE,
-        };
         let wheel = Event::MouseWheel {
             unit: MouseWheelUnit::Point,
             delta: egui::vec2(0.0, 50.0),
@@ -321,7 +409,8 @@ mod tests {
             modifiers: Modifiers::NONE,
         };
         let mut events = drag([200.0, 150.0], [250.0, 190.0], Button::Right, false);
-        events.extend([wheel, press(Key::W), press(Key::ArrowLeft), press(Key::Home)]);
+        events.extend([wheel]);
+        events.extend([Key::W, Key::ArrowLeft, Key::Home].map(|key| press(key, Modifiers::NONE)));
         assert_ne!(play(&Beholder::Camera, state.clone(), &events, 1).state.camera, state.camera);
         assert_eq!(after(&events), state);
     }

@@ -50,7 +50,7 @@ pub(super) fn drag(tool: Tool, button: PointerButton, modifiers: Modifiers, by: 
             Tool::Fly => Edit::Turn { right_deg: 0.5 * ORBIT_DEG * right, up_deg: -0.5 * ORBIT_DEG * down },
             Tool::Window => window(by),
         },
-        PointerButton::Middle => Edit::Zoom((-2.0 * down).exp()),
+        PointerButton::Middle => zoom(-2.0 * down),
         _ => Edit::Pan { right: -right, up: down },
     }
 }
@@ -69,8 +69,13 @@ pub(super) fn scroll(tool: Tool, state: &State, up_points: f64) -> Edit {
             let forward_m = FLY_PER_NOTCH * state.camera.distance_m * notches;
             Edit::Fly { right_m: 0.0, up_m: 0.0, forward_m }
         }
-        Tool::Orbit | Tool::Window => Edit::Zoom((0.12 * notches).exp()),
+        Tool::Orbit | Tool::Window => zoom(0.12 * notches),
     }
+}
+
+/// By a power of e, from the furthest to the nearest at most.
+fn zoom(exponent: f64) -> Edit {
+    Edit::Zoom(exponent.clamp(-20.0, 20.0).exp())
 }
 
 #[cfg(test)]

@@ -10,7 +10,11 @@ pub(super) fn show(ui: &Ui, picture: Rect, shown: &Shown<'_>) {
     let font = FontId::proportional(14.0);
     let mut bottom = picture.bottom() - 12.0;
     for note in shown.notes.iter().rev() {
-        let color = if note.tone == Tone::Failed { ALARM } else { Color32::from_gray(215) };
+        let color = match note.tone {
+            Tone::Done => Color32::from_gray(215),
+            Tone::Warning => ACCENT,
+            Tone::Failed => ALARM,
+        };
         let text = painter.layout(note.text.clone(), font.clone(), color, picture.width() - 48.0);
         let area = Rect::from_min_size(
             pos2(picture.left() + 12.0, bottom - text.size().y - 10.0),

@@ -45,13 +45,12 @@ pub(super) struct Grip {
     opacity: Option<usize>,
     color: Option<usize>,
     chosen_color: Option<usize>,
-    preset: Option<&'static str>,
 }
 
 pub(super) fn show(grip: &mut Grip, ui: &mut Ui, shown: &Shown<'_>, asked: &mut Asked) {
     let transfer = &shown.state.transfer;
     ui.horizontal(|ui| {
-        presets(grip, ui, asked);
+        presets(grip, ui, shown.preset, asked);
         color_of_point(grip, ui, transfer, asked);
     });
     opacity_graph(grip, ui, shown, asked);
@@ -59,11 +58,10 @@ pub(super) fn show(grip: &mut Grip, ui: &mut Ui, shown: &Shown<'_>, asked: &mut 
     window(ui, shown, asked);
 }
 
-fn presets(grip: &mut Grip, ui: &mut Ui, asked: &mut Asked) {
-    ComboBox::from_id_salt("presets").selected_text(grip.preset.unwrap_or("presets")).show_ui(ui, |ui| {
+fn presets(grip: &mut Grip, ui: &mut Ui, chosen: Option<&str>, asked: &mut Asked) {
+    ComboBox::from_id_salt("presets").selected_text(chosen.unwrap_or("presets")).show_ui(ui, |ui| {
         for preset in PRESETS {
-            if ui.selectable_label(grip.preset == Some(preset), preset).clicked() {
-                grip.preset = Some(preset);
+            if ui.selectable_label(chosen == Some(preset), preset).clicked() {
                 grip.chosen_color = None;
                 asked.command(Command::Preset(preset.to_owned()));
             }
@@ -128,8 +126,8 @@ fn opacity_graph(grip: &mut Grip, ui: &mut Ui, shown: &Shown<'_>, asked: &mut As
     match act {
         Some(Act::Move(index, to)) => asked.edit(Edit::MoveOpacityPoint { index, to: value(to) }),
         Some(Act::Add(at)) => asked.edit(Edit::AddOpacityPoint(value(at))),
-        Some(Act::Remove(index)) => asked.edit(Edit::RemoveOpacityPoint(index)),
-        Some(Act::Choose(_)) | None => {}
+        Some(Act::Remove(index)) if places.len() > 1 => asked.edit(Edit::RemoveOpacityPoint(index)),
+        Some(Act::Remove(_) | Act::Choose(_)) | None => {}
     }
 }
 
@@ -174,11 +172,11 @@ fn color_strip(grip: &mut Grip, ui: &mut Ui, transfer: &Transfer, asked: &mut As
             grip.chosen_color = None;
             asked.edit(Edit::AddColorPoint(value(at)));
         }
-        Some(Act::Remove(index)) => {
+        Some(Act::Remove(index)) if places.len() > 1 => {
             grip.chosen_color = None;
             asked.edit(Edit::RemoveColorPoint(index));
         }
-        None => {}
+        Some(Act::Remove(_)) | None => {}
     }
 }
 
@@ -199,9 +197,8 @@ fn follow(held: &mut Option<usize>, response: &Response, places: &[Pos2]) -> Opt
         let origin = response.ctx.input(|input| input.pointer.press_origin());
         *held = origin.and_then(|origin| nearest(places, origin));
     }
-    if !response.dragged() {
-        *held = None;
-    }
+    // Another function may have fewer points.
+    *held = held.filter(|&index| response.dragged() && index < places.len());
     let act = |index: usize| {
         if response.secondary_clicked() {
             Some(Act::Remove(index))
