@@ -30,7 +30,7 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "M", default_value = DEFAULT_DISTANCE, value_parser = spec::within(0.0..=1000.0), allow_negative_numbers = true)]
     pub(crate) distance: f64,
 
-    /// Vertical field of view, radians.
+    /// Field of view of the shorter side of a picture, radians.
     #[arg(long, value_name = "RAD", default_value = "1", value_parser = spec::fov, allow_negative_numbers = true)]
     pub(crate) fov: f64,
 
@@ -167,9 +167,7 @@ impl CameraArgs {
             Some(height_m) => Projection::Orthographic(
                 OrthographicBox::from_height(height_m, self.size).map_err(Failure::input)?,
             ),
-            None => {
-                Projection::Perspective(Frustum::from_fov_y(self.fov, self.size).map_err(Failure::input)?)
-            }
+            None => Projection::Perspective(Frustum::from_fov(self.fov, self.size).map_err(Failure::input)?),
         };
         let middle = self.aim.orbit(turn_deg, self.distance).view(projection, self.size);
         let rig = match self.stereo {

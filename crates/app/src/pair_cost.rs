@@ -57,7 +57,7 @@ mod tests {
         let settings = Settings { mode, shading, ..Settings::new(volume.full_window(), transfer) };
         let parameters = CastParameters::new(&settings, &Placement::new(&volume, world_from_patient));
         let size = [768, 768];
-        let frustum = Frustum::from_fov_y(1.0, size).unwrap();
+        let frustum = Frustum::from_fov(1.0, size).unwrap();
         let orbit = Orbit { distance_m, ..Orbit::default() };
         let middle = orbit.view(Projection::Perspective(frustum), size);
         let rig = Rig::Stereo { eye_distance_m: 0.065, convergence_m: f64::INFINITY };

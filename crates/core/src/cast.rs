@@ -190,12 +190,14 @@ impl CastParameters {
     /// The same, where all occupied blocks are in a box, texture space. Only composites whose samples are looked up one by one take that
     /// into account; the others see further than their blocks.
     pub fn occupied_within(self, occupied: [Vec3; 2]) -> Self {
+        let occupied = self.narrowed(occupied);
+        Self { occupied, ..self }
+    }
+
+    /// What contributes, where all occupied blocks are in a box.
+    fn narrowed(&self, occupied: [Vec3; 2]) -> [Vec3A; 2] {
         let is_by_sample = matches!(self.classifier, Classifier::Value | Classifier::ValueGradient);
-        if self.mode == Mode::Composite && is_by_sample {
-            Self { occupied: occupied.map(Vec3A::from), ..self }
-        } else {
-            self
-        }
+        if self.mode == Mode::Composite && is_by_sample { occupied.map(Vec3A::from) } else { self.occupied }
     }
 
     /// The same for a coarser level of the volume: as many samples per voxel, which is 2ˡ times as long.
@@ -224,7 +226,16 @@ impl CastParameters {
 
     /// The corners of the part of the visible box that may be occupied, world space, metres.
     pub fn occupied_corners_world(&self) -> [DVec3; 8] {
-        let [lo, hi] = self.occupied.map(|corner| corner.clamp(self.box_lo, self.box_hi));
+        self.corners_world_within(self.occupied)
+    }
+
+    /// The same, where all occupied blocks are in a box, texture space.
+    pub fn corners_world_of_occupied(&self, occupied: [Vec3; 2]) -> [DVec3; 8] {
+        self.corners_world_within(self.narrowed(occupied))
+    }
+
+    fn corners_world_within(&self, occupied: [Vec3A; 2]) -> [DVec3; 8] {
+        let [lo, hi] = occupied.map(|corner| corner.clamp(self.box_lo, self.box_hi));
         self.corners_world(lo, hi)
     }
 

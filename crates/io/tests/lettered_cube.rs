@@ -62,7 +62,7 @@ fn picture(volume: &Volume) -> RgbImage {
     let settings = Settings::new(Window::new(0.0, 255.0).unwrap(), TransferFunction::ramp(0.2, 1.0).unwrap());
     let placement = Placement::new(volume, world_from_patient(volume.grid(), AnatomicalDirection::Superior));
     let size = [48, 48];
-    let frustum = Frustum::from_fov_y(0.8, size).unwrap();
+    let frustum = Frustum::from_fov(0.8, size).unwrap();
     let orbit = Orbit { azimuth_rad: 0.6, elevation_rad: 0.4, ..Orbit::default() };
     let view = orbit.view(Projection::Perspective(frustum), size);
     let parameters = CastParameters::new(&settings, &placement);

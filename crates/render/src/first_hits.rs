@@ -180,7 +180,7 @@ impl StartPass {
         let nothing = storage(&gpu.device, "nothing seen", 4, wgpu::BufferUsages::empty());
         let (uniform, nearness) = passage.unwrap_or((PassageUniform::at_once(view.size), &nothing));
         // A square is a tile.
-        let covered = Squares::covered(view, &prepared.parameters.occupied_corners_world());
+        let covered = Squares::covered(view, &prepared.occupied_corners_world());
         let uniform = PassageUniform { first_tile: [covered.columns.start, covered.bands.start], ..uniform };
         let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("passage"),

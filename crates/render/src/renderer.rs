@@ -21,8 +21,10 @@ use crate::target::{LAYERS, Target, target_texture};
 use crate::tile_pass::{Listing, TileList, TilePass};
 use crate::uniforms::{CastUniform, ViewUniform};
 use crate::volume::GpuVolume;
+use glam::{DVec3, Vec3};
 use half::f16;
 use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 use wgpu::util::DeviceExt as _;
 use wheatstone_core::cast::CastParameters;
@@ -113,12 +115,28 @@ pub struct Prepared {
     pub(crate) view_uniform: wgpu::Buffer,
     pub(crate) frame: wgpu::BindGroup,
     pub(crate) volume: wgpu::BindGroup,
+    /// The box outside of which no block is occupied, texture space, once it is known: that of all that show the same.
+    occupied: Arc<OnceLock<[Vec3; 2]>>,
 }
 
 impl Prepared {
     /// What is cast.
     pub fn parameters(&self) -> &CastParameters {
         &self.parameters
+    }
+
+    /// From now on it is known that all occupied blocks are in a box, texture space: fewer pixels are cast, and warps have less to search.
+    /// No picture changes by that. What is known already stays.
+    pub fn know_occupied(&self, occupied: [Vec3; 2]) {
+        self.occupied.get_or_init(|| occupied);
+    }
+
+    /// The corners of the part of the visible box that may be occupied, as far as is known, world space, metres.
+    pub fn occupied_corners_world(&self) -> [DVec3; 8] {
+        match self.occupied.get() {
+            Some(&occupied) => self.parameters.corners_world_of_occupied(occupied),
+            None => self.parameters.occupied_corners_world(),
+        }
     }
 
     /// The same with a kernel that records what rays pass.
@@ -260,6 +278,7 @@ impl Renderer {
             view_uniform,
             frame,
             volume,
+            occupied: Arc::default(),
         })
     }
 
@@ -364,8 +383,8 @@ impl Renderer {
     ) -> Result<Prepared, GpuError> {
         let (view_uniform, frame) = self.frame(gpu, &cast_uniform);
         gpu.check()?;
-        let volume = prepared.volume.clone();
-        Ok(Prepared { parameters, cast_uniform, view_uniform, frame, volume, ..*prepared })
+        let (volume, occupied) = (prepared.volume.clone(), Arc::clone(&prepared.occupied));
+        Ok(Prepared { parameters, cast_uniform, view_uniform, frame, volume, occupied, ..*prepared })
     }
 
     /// The buffer of a view and the group that it makes with some parameters.
@@ -580,7 +599,7 @@ impl Renderer {
         let iterations = prepared.iterations_per_sample;
         let may_be_split = sample_limit(most_samples, iterations, 1.0) != u32::MAX;
         let kept_rows = if may_be_split { state_rows } else { BAND_ROWS };
-        let covered = Squares::covered(view, &parameters.occupied_corners_world());
+        let covered = Squares::covered(view, &prepared.occupied_corners_world());
         if prepared.variant.is_behind() {
             self.keep_front(gpu, target, &covered)?;
         } else {

@@ -134,6 +134,6 @@ pub(super) fn default_transfer(name: &str) -> TransferSpec {
 
 /// The DM test camera, turned about the vertical axis.
 pub(super) fn test_view(azimuth_rad: f64, size: [u32; 2]) -> Result<View, Failure> {
-    let frustum = Frustum::from_fov_y(1.0, size).map_err(Failure::input)?;
+    let frustum = Frustum::from_fov(1.0, size).map_err(Failure::input)?;
     Ok(Orbit { azimuth_rad, ..Orbit::default() }.view(Projection::Perspective(frustum), size))
 }

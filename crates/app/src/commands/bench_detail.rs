@@ -241,7 +241,7 @@ impl DetailArgs {
     }
 
     fn view(&self, distance_m: f64, size: [u32; 2]) -> Result<View, Failure> {
-        let frustum = Frustum::from_fov_y(1.0, size).map_err(Failure::input)?;
+        let frustum = Frustum::from_fov(1.0, size).map_err(Failure::input)?;
         let orbit = Orbit { azimuth_rad: 0.4, elevation_rad: 0.2, distance_m };
         Ok(orbit.view(Projection::Perspective(frustum), size))
     }

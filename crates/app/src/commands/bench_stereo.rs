@@ -35,7 +35,7 @@ const SAMPLING_FACTOR: f32 = 2.0;
 
 /// Time and error of stereo pairs from one cast against two casts, by the protocol of Buchacher and Erdt 2017.
 ///
-/// The eyes are 0.065 m apart, look in parallel, have a vertical field of view of 110 degrees, and turn once about the volume's
+/// The eyes are 0.065 m apart, look in parallel, have a field of view of 110 degrees, and turn once about the volume's
 /// vertical axis. Steps are half a voxel long; rays end at an opacity of 0.99. Each frame is made in every way in turn, in changing
 /// order, three times in a row, of which the fastest counts. The left eye is cast, the right one derived. GPU only; that includes software Vulkan.
 #[derive(Debug, Args)]

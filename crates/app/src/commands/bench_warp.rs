@@ -74,7 +74,7 @@ pub(crate) struct WarpBenchArgs {
     #[arg(long, value_name = "WxH", default_value = "768x768", value_parser = spec::picture_size)]
     size: [u32; 2],
 
-    /// Vertical field of view, degrees.
+    /// Field of view of the shorter side of the picture, degrees.
     #[arg(long, value_name = "DEG", default_value_t = 90.0, value_parser = spec::within(1.0..=170.0), allow_negative_numbers = true)]
     fov_deg: f64,
 
@@ -232,7 +232,7 @@ impl WarpBenchArgs {
             engine.prepare(&CastParameters::new(&settings, &placement), &skipping)
         };
         let shots = [shaded(Shading::None)?, shaded(Shading::Shadow)?];
-        let frustum = Frustum::from_fov_y(self.fov_deg.to_radians(), self.size).map_err(Failure::input)?;
+        let frustum = Frustum::from_fov(self.fov_deg.to_radians(), self.size).map_err(Failure::input)?;
         let orbit = Orbit { distance_m: self.distance + RADIUS_M, ..Orbit::default() };
         let middle = orbit.view(Projection::Perspective(frustum), self.size);
         let extent = Extent { turn_rad: self.turn_deg.to_radians(), sideways_m: self.sideways };

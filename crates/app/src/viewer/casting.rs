@@ -15,6 +15,7 @@ use wheatstone_core::skip::Structure;
 use wheatstone_core::view::{View, world_from_patient};
 use wheatstone_core::volume::Grid;
 use wheatstone_render::live::{Activity, Front, LiveError, LiveView};
+use wheatstone_render::skip::{BoundsReading, GpuSkipMap};
 use wheatstone_render::{Gpu, GpuError, GpuVolume, LayersError, Leap, Prepared, Renderer, Sources, Target};
 
 /// Refreshes that a picture in motion takes at most.
@@ -39,9 +40,40 @@ struct Scene {
     structure: Option<Structure>,
     aimed: Vec<View>,
     live: LiveView,
+    /// Where the volume is occupied by what was prepared last, as long as that is not known.
+    bounds: Option<Bounds>,
     is_resting: bool,
     /// That have been complete.
     pictures: u64,
+}
+
+/// Bounds of what has been prepared, on their way from the device.
+struct Bounds {
+    of: Arc<Prepared>,
+    reading: BoundsReading,
+}
+
+impl Bounds {
+    /// Takes them over if they have arrived; what is still to be waited for.
+    fn taken_over(self) -> Result<Option<Self>, GpuError> {
+        let Some(occupied) = self.reading.poll()? else { return Ok(Some(self)) };
+        self.of.know_occupied(occupied);
+        Ok(None)
+    }
+}
+
+/// Something prepared, and the map that its rays leap by.
+struct Made {
+    prepared: Arc<Prepared>,
+    map: Option<GpuSkipMap>,
+}
+
+impl Made {
+    /// Begins to read back where the volume is occupied.
+    fn bounds(&self, gpu: &Gpu) -> Result<Option<Bounds>, GpuError> {
+        let of = Arc::clone(&self.prepared);
+        self.map.as_ref().map(|map| Ok(Bounds { of, reading: map.read_bounds(gpu)? })).transpose()
+    }
 }
 
 /// What has to be prepared anew when it changes.
@@ -84,8 +116,9 @@ impl Casting {
         let Arrived { facts, volume, mut skipping, .. } = arrived;
         let settings = Settings::of(state);
         let structure = skipping.as_ref().and_then(|skipping| skipping.at_rest(&state.look));
-        let prepared =
+        let made =
             prepare(gpu, &mut self.renderer, (&facts.grid, &volume), skipping.as_mut(), structure, state)?;
+        let (bounds, prepared) = (made.bounds(gpu)?, made.prepared);
         let (live, aimed, pictures) = match self.scene.take() {
             Some(Scene { mut live, aimed, pictures, .. }) => {
                 live.replace(prepared);
@@ -99,8 +132,18 @@ impl Casting {
             }
         };
         let (grid, is_resting) = (facts.grid, false);
-        self.scene =
-            Some(Scene { grid, volume, skipping, settings, structure, aimed, live, is_resting, pictures });
+        self.scene = Some(Scene {
+            grid,
+            volume,
+            skipping,
+            settings,
+            structure,
+            aimed,
+            live,
+            bounds,
+            is_resting,
+            pictures,
+        });
         Ok(())
     }
 
@@ -118,7 +161,9 @@ impl Casting {
             let before = std::mem::replace(&mut scene.settings, settings);
             scene.structure = structure;
             let Scene { grid, volume, skipping, .. } = &mut *scene;
-            let prepared = prepare(gpu, renderer, (grid, volume), skipping.as_mut(), structure, state)?;
+            let made = prepare(gpu, renderer, (grid, volume), skipping.as_mut(), structure, state)?;
+            scene.bounds = made.bounds(gpu)?;
+            let prepared = made.prepared;
             let sample_cost = |settings: &Settings| {
                 (settings.look.mode_and_shading(), settings.layers.as_ref().map(Vec::len))
             };
@@ -140,6 +185,7 @@ impl Casting {
     /// Hands over as much work as a budget holds, without waiting.
     pub(crate) fn refresh(&mut self, gpu: &Gpu, budget: Duration) -> Result<(), Failure> {
         let Some(scene) = &mut self.scene else { return Ok(()) };
+        scene.bounds = scene.bounds.take().map_or(Ok(None), Bounds::taken_over)?;
         let refreshed = scene.live.refresh(gpu, &mut self.renderer, budget);
         if refreshed.is_err() {
             // The front may be the one before.
@@ -277,7 +323,7 @@ fn cast(
     state: &State,
     view: View,
 ) -> Result<Target, Failure> {
-    let prepared = prepare(gpu, renderer, volume, skipping, structure, state)?;
+    let Made { prepared, .. } = prepare(gpu, renderer, volume, skipping, structure, state)?;
     let mut targets = [Target::new(gpu, view.size)?];
     renderer.render(gpu, &prepared, &[view], &mut targets)?;
     let [target] = targets;
@@ -291,27 +337,26 @@ fn prepare(
     skipping: Option<&mut Skipping>,
     structure: Option<Structure>,
     state: &State,
-) -> Result<Arc<Prepared>, Failure> {
+) -> Result<Made, Failure> {
     let settings = state.settings().map_err(Failure::input)?;
     let parameters = CastParameters::new(&settings, &placement(grid, &state.look));
     // A map of its own for each settings: a picture under way still leaps by the one before.
-    let map;
+    let mut map = None;
     let leap = match (skipping, structure) {
         (None, _) => Leap::Nothing,
         (Some(skipping), None) => Leap::IdleBlocks(skipping.builder.values()),
         (Some(skipping), Some(structure)) => {
-            map = skipping.builder.map(gpu, &parameters, structure)?;
-            Leap::EmptyBlocks(&map)
+            Leap::EmptyBlocks(map.insert(skipping.builder.map(gpu, &parameters, structure)?))
         }
     };
     let sources = Sources { leap, ..Sources::volume(volume) };
     let prepared = renderer.prepare(gpu, &sources, parameters)?;
     if !keeps_layers(state) {
-        return Ok(Arc::new(prepared));
+        return Ok(Made { prepared: Arc::new(prepared), map });
     }
     let Layering { thresholds, .. } = state.pace.layers.layering().map_err(Failure::input)?;
     match renderer.with_layers(gpu, &prepared, &thresholds) {
-        Ok(layered) => Ok(Arc::new(layered)),
+        Ok(layered) => Ok(Made { prepared: Arc::new(layered), map }),
         Err(LayersError::Gpu(error)) => Err(Failure::Gpu(error)),
         Err(other) => Err(Failure::Internal(other.into())),
     }

@@ -14,6 +14,7 @@ use super::ui::{Beholder, Desk, Shown, dress, run_passes};
 use crate::failure::Failure;
 use crate::spec::clamped_side;
 use egui::{Context, PlatformOutput, RawInput, Rect, ViewportId};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wheatstone_render::Gpu;
@@ -26,6 +27,15 @@ const TRY_AGAIN: Duration = Duration::from_millis(20);
 
 /// How often messages are looked at.
 const READ_NOTES: Duration = Duration::from_millis(500);
+
+/// From one refresh to the next on software Vulkan.
+const SOFTWARE_TIME: Duration = Duration::from_millis(40);
+
+/// Rates of monitors that are believed, refreshes in 1000 s.
+const USUAL_MILLIHERTZ: RangeInclusive<u32> = 10_000..=1_000_000;
+
+/// The rate of a monitor that does not tell it.
+const UNKNOWN_MILLIHERTZ: u32 = 60_000;
 
 /// Session, device and panels.
 pub(crate) struct Viewer {
@@ -45,6 +55,12 @@ pub(crate) struct Viewer {
     drawn_pictures: u64,
     /// When panels want to be drawn again.
     repaint_at: Option<Instant>,
+    /// Whether eyes' pictures get finer when nothing is left to cast.
+    can_refine: bool,
+    /// What panels have told of how fine the picture is.
+    told_quality: String,
+    /// From one refresh of the display to the next.
+    display_time: Duration,
 }
 
 /// What the window has to do after a refresh.
@@ -75,6 +91,9 @@ impl Viewer {
             last_draw: Duration::ZERO,
             drawn_pictures: 0,
             repaint_at: Some(begun),
+            can_refine: false,
+            told_quality: String::new(),
+            display_time: display_time(gpu.description().is_software, None),
             gpu,
             session,
             context,
@@ -84,6 +103,11 @@ impl Viewer {
 
     pub(crate) fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// What is shown is on a monitor that is refreshed so many times in 1000 s, if that is known.
+    pub(crate) fn move_to_monitor(&mut self, refresh_rate_millihertz: Option<u32>) {
+        self.display_time = display_time(self.gpu.description().is_software, refresh_rate_millihertz);
     }
 
     /// Whether the window is to fill the whole screen.
@@ -144,6 +168,9 @@ impl Viewer {
         let mut panels = Panels::new(&self.context, &mut output.0, size);
         self.screen.update(&self.gpu, &mut panels);
         let (pictures, has_picture) = self.pictures(pixels)?;
+        if self.described_quality() != self.told_quality {
+            self.touch();
+        }
         if let Some(sheet) = canvas.sheet(&self.gpu) {
             let submission = self.screen.draw(&self.gpu, &sheet.view(), &pictures, &panels);
             if let Sheet::Window(texture) = sheet {
@@ -173,6 +200,7 @@ impl Viewer {
         let now = Instant::now();
         let player = self.player.as_ref().and_then(|player| player.next_at(self.status()));
         let is_busy = self.casting.pictures() != self.drawn_pictures
+            || (self.casting.is_resting() && self.can_refine)
             || (self.session.is_capturing()
                 && self.session.progress().is_none()
                 && self.casting.front().is_some()
@@ -183,7 +211,7 @@ impl Viewer {
     fn status(&self) -> Status {
         Status {
             is_loading: self.session.progress().is_some(),
-            is_at_rest: self.casting.is_resting() && !self.session.is_capturing(),
+            is_at_rest: self.casting.is_resting() && !self.can_refine && !self.session.is_capturing(),
         }
     }
 
@@ -229,9 +257,10 @@ impl Viewer {
 
     /// Lays the panels out and does what they ask for; gives what is to be drawn and the picture's area in points.
     fn run_panels(&mut self, input: RawInput) -> (egui::FullOutput, Rect) {
-        let Self { session, casting, desk, timings, report, context, .. } = self;
+        let refresh_ms = 1e3 * self.refresh_time().as_secs_f32();
+        self.told_quality = self.described_quality();
+        let Self { session, casting, desk, timings, report, context, told_quality, .. } = self;
         let notes = session.notes.latest().to_vec();
-        let quality = casting.described_quality();
         let mut has_asked = false;
         let mut area = Rect::NOTHING;
         let output = run_passes(context, input, |ui| {
@@ -245,7 +274,8 @@ impl Viewer {
                 notes: &notes,
                 timings,
                 device: &report.device,
-                quality: &quality,
+                quality: told_quality,
+                refresh_ms,
             };
             let pass = desk.show(ui, &shown);
             area = pass.picture;
@@ -260,8 +290,16 @@ impl Viewer {
         (output, area)
     }
 
+    /// How finely what is shown is cast, and how it is shown, in words.
+    fn described_quality(&self) -> String {
+        let is_of_display = self.session.state().stereo.arrangement.is_of_display();
+        let shown = if is_of_display { "shown as it is cast".to_owned() } else { self.eyes.described() };
+        format!("{}\n{shown}", self.casting.described_quality())
+    }
+
     /// What is to be shown in an area, and whether it shows something.
     fn pictures(&mut self, area: Area) -> Result<(Pictures, bool), Failure> {
+        self.can_refine = false;
         if self.session.state().stereo.arrangement.is_of_display() {
             self.display_pictures(area)
         } else {
@@ -297,8 +335,14 @@ impl Viewer {
             (Some(front), Ok(views)) => {
                 let layering = state.pace.layers.layering().map_err(Failure::input)?;
                 self.eyes.step_by(layering.settings);
-                let wanted = Wanted { picture: self.casting.pictures(), views, warp: state.pace.warp };
-                self.eyes.show(&self.gpu, front, wanted)
+                let wanted = Wanted { picture: self.casting.pictures(), views, warp: state.warp() };
+                let shown = if self.casting.is_resting() && self.eyes.shows(&wanted) {
+                    self.eyes.refine(&self.gpu, front)
+                } else {
+                    self.eyes.show(&self.gpu, front, wanted)
+                };
+                self.can_refine = self.eyes.can_refine();
+                shown
             }
             (None, Ok(_)) => Ok(None),
             (_, Err(failure)) => Err(failure),
@@ -310,6 +354,7 @@ impl Viewer {
     /// Writes the files that are asked for.
     fn capture(&mut self, pictures: &Pictures, has_picture: bool, panels: &Panels) -> Result<(), Failure> {
         let is_at_rest = self.casting.is_resting()
+            && !self.can_refine
             && self.session.progress().is_none()
             && has_picture
             && self.casting.pictures() == self.drawn_pictures;
@@ -324,10 +369,39 @@ impl Viewer {
     }
 
     fn refresh_time(&self) -> Duration {
-        Duration::from_secs_f64(self.session.state().pace.refresh_ms / 1e3)
+        self.session.state().pace.refresh_time(self.display_time)
     }
 
     fn survive<T>(&mut self, outcome: Result<T, Failure>) -> Result<Option<T>, Failure> {
         self.session.notes.survive(outcome)
+    }
+}
+
+/// From one refresh of a monitor to the next. Software Vulkan shares the processor with all that draws: it gets the time of 25 Hz.
+fn display_time(is_software: bool, refresh_rate_millihertz: Option<u32>) -> Duration {
+    if is_software {
+        return SOFTWARE_TIME;
+    }
+    let usual = |rate: &u32| USUAL_MILLIHERTZ.contains(rate);
+    Duration::from_secs_f64(
+        1e3 / f64::from(refresh_rate_millihertz.filter(usual).unwrap_or(UNKNOWN_MILLIHERTZ)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refreshes_are_those_of_the_monitor_but_on_software() {
+        let ms = |is_software, rate| 1e3 * display_time(is_software, rate).as_secs_f64();
+        assert!((ms(false, Some(144_000)) - 1000.0 / 144.0).abs() < 1e-6);
+        assert!((ms(false, Some(59_940)) - 1000.0 / 59.94).abs() < 1e-6);
+        for unknown in [None, Some(0), Some(u32::MAX)] {
+            assert!((ms(false, unknown) - 1000.0 / 60.0).abs() < 1e-6, "{unknown:?}");
+        }
+        for rate in [None, Some(60_000), Some(240_000)] {
+            assert_eq!(ms(true, rate), 40.0);
+        }
     }
 }

@@ -456,10 +456,10 @@ mod tests {
         std::fs::write(&view, State::default().to_json().unwrap()).unwrap();
         let source = Source { file: Some(view), layout: None };
         let session = Session::begin(source, Arc::new(|| ()), Destination::Window).unwrap();
-        let session = session.edited(&[Edit::FieldOfView(17.0)]).unwrap();
-        assert_eq!(session.state.camera.fov_y_deg, 17.0);
+        let session = session.edited(&[Edit::Refresh(Some(17.0))]).unwrap();
+        assert_eq!(session.state.pace.refresh_ms, Some(17.0));
         let Manner::Saved(view) = session.pending.unwrap().manner else { panic!("a saved view") };
-        assert_eq!(view.camera.fov_y_deg, 17.0);
+        assert_eq!(view.pace.refresh_ms, Some(17.0));
     }
 
     #[test]

@@ -104,9 +104,15 @@ impl Before {
             None,
             Some(largest_side),
         );
-        let viewer = Viewer::new(gpu, self.session, self.player, context, &canvas, self.begun)?;
+        let mut viewer = Viewer::new(gpu, self.session, self.player, context, &canvas, self.begun)?;
+        viewer.move_to_monitor(refresh_rate_millihertz(&window));
         Ok(Open { window, input, canvas, viewer })
     }
+}
+
+/// Of the monitor that a window is on, refreshes in 1000 s.
+fn refresh_rate_millihertz(window: &Window) -> Option<u32> {
+    window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz())
 }
 
 /// No driver knows windows.
@@ -136,8 +142,13 @@ impl Open {
         }
         match event {
             WindowEvent::RedrawRequested => self.refresh(),
+            WindowEvent::Moved(_) => {
+                self.viewer.move_to_monitor(refresh_rate_millihertz(&self.window));
+                Ok(())
+            }
             WindowEvent::Resized(size) => {
                 self.viewer.touch();
+                self.viewer.move_to_monitor(refresh_rate_millihertz(&self.window));
                 Ok(self.canvas.resize(self.viewer.gpu(), (*size).into())?)
             }
             _ => Ok(()),

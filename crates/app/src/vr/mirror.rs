@@ -127,7 +127,7 @@ impl Open {
 
     fn draw(&mut self, room: &mut Room) -> Result<(), Failure> {
         let input = self.input.take_egui_input(&self.window);
-        let Mirrored { session, casting, timings, device, pictures, beholder } = room.mirrored();
+        let Mirrored { session, casting, timings, device, pictures, beholder, period_s } = room.mirrored();
         let notes = session.notes.latest().to_vec();
         let quality = casting.described_quality();
         let mut area = Rect::NOTHING;
@@ -144,6 +144,7 @@ impl Open {
                 timings,
                 device,
                 quality: &quality,
+                refresh_ms: 1e3 * period_s as f32,
             };
             let pass = desk.show(ui, &shown);
             area = pass.picture;

@@ -35,6 +35,9 @@ const NAP: Duration = Duration::from_millis(10);
 /// Part of a refresh that is kept free, for what the runtime does with pictures.
 const KEPT_FREE: f64 = 0.15;
 
+/// From one refresh to the next before the headset has told it, seconds.
+const USUAL_PERIOD_S: f64 = 1.0 / 90.0;
+
 /// Part of the time from refresh to refresh that casting gets even where drawing takes too long: whatever is shown would else stay as
 /// it is.
 const LEAST_CAST: f64 = 0.1;
@@ -130,6 +133,8 @@ pub(crate) struct Mirrored<'a> {
     /// Of the left and the right eye, premultiplied.
     pub(crate) pictures: Option<&'a [wgpu::TextureView; 2]>,
     pub(crate) beholder: Beholder,
+    /// Of the headset's refreshes.
+    pub(crate) period_s: f64,
 }
 
 /// What time there is to cast in.
@@ -234,6 +239,7 @@ impl Room {
         let beholder = self.beholder();
         Mirrored {
             beholder,
+            period_s: self.tick.map_or(USUAL_PERIOD_S, |tick| tick.period_s),
             session: &mut self.session,
             casting: &self.casting,
             timings: &self.timings,
@@ -253,8 +259,7 @@ impl Room {
             }
             _ => None,
         };
-        let period_ms = self.tick.map_or(self.session.state().pace.refresh_ms, |tick| 1e3 * tick.period_s);
-        Beholder::Headset { views, period_ms: period_ms as f32 }
+        Beholder::Headset { views }
     }
 
     fn wants_to_end(&self) -> bool {

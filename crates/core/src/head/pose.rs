@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_view_is_the_view_of_its_pose() {
-        let frustum = Projection::Perspective(Frustum::from_fov_y(1.0, [40, 30]).unwrap());
+        let frustum = Projection::Perspective(Frustum::from_fov(1.0, [40, 30]).unwrap());
         let orbit = Orbit { azimuth_rad: 0.7, elevation_rad: -0.4, distance_m: 2.0 };
         let view = orbit.view(frustum, [40, 30]);
         let pose = Pose::of(&view);

@@ -220,7 +220,7 @@ mod tests {
     const SIZE: [u32; 2] = [96, 64];
 
     fn pair(fov_rad: f64, eye_distance_m: f64, convergence_m: f64, size: [u32; 2]) -> [View; 2] {
-        let frustum = Frustum::from_fov_y(fov_rad, size).unwrap();
+        let frustum = Frustum::from_fov(fov_rad, size).unwrap();
         let middle = Orbit { azimuth_rad: 0.4, elevation_rad: 0.2, ..Orbit::default() }
             .view(Projection::Perspective(frustum), size);
         Rig::Stereo { eye_distance_m, convergence_m }.views(&middle).try_into().unwrap()

@@ -71,19 +71,20 @@ pub enum FrustumError {
 const NEAR_M: f64 = 0.001;
 
 impl Frustum {
-    /// A symmetric frustum from the vertical field of view; the horizontal one follows from square pixels.
+    /// A symmetric frustum from the field of view of the picture's shorter side; the longer one's follows from square pixels. So what
+    /// fits a square picture fits pictures of all shapes.
     ///
     /// # Errors
     /// A field of view outside (0, π) or an empty picture.
-    pub fn from_fov_y(fov_y_rad: f64, size: [u32; 2]) -> Result<Self, FrustumError> {
-        if !(fov_y_rad > 0.0 && fov_y_rad < std::f64::consts::PI) {
-            return Err(FrustumError::FieldOfView(fov_y_rad));
+    pub fn from_fov(fov_rad: f64, size: [u32; 2]) -> Result<Self, FrustumError> {
+        if !(fov_rad > 0.0 && fov_rad < std::f64::consts::PI) {
+            return Err(FrustumError::FieldOfView(fov_rad));
         }
         if size.contains(&0) {
             return Err(FrustumError::Size(size[0], size[1]));
         }
-        let up = (0.5 * fov_y_rad).tan();
-        let right = up * f64::from(size[0]) / f64::from(size[1]);
+        let shorter = f64::from(size[0].min(size[1]));
+        let [right, up] = size.map(|side| (0.5 * fov_rad).tan() * f64::from(side) / shorter);
         Ok(Self { left: -right, right, down: -up, up, near_m: NEAR_M, far_m: f64::INFINITY })
     }
 
@@ -139,5 +140,26 @@ impl Projection {
             Self::Orthographic(o) => Self::Orthographic(OrthographicBox { near_m, far_m, ..o }),
             Self::Mcop(m) => Self::Mcop(Mcop { near_m, far_m, ..m }),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_field_of_view_is_that_of_the_shorter_side() {
+        let tangent = 0.5_f64.tan();
+        for (size, right, up) in [
+            ([40, 20], 2.0 * tangent, tangent),
+            ([20, 40], tangent, 2.0 * tangent),
+            ([7, 7], tangent, tangent),
+        ] {
+            let frustum = Frustum::from_fov(1.0, size).unwrap();
+            assert!((frustum.right - right).abs() < 1e-12 && (frustum.up - up).abs() < 1e-12, "{size:?}");
+            assert_eq!((frustum.left, frustum.down), (-frustum.right, -frustum.up));
+        }
+        assert_eq!(Frustum::from_fov(4.0, [1, 1]), Err(FrustumError::FieldOfView(4.0)));
+        assert_eq!(Frustum::from_fov(1.0, [0, 1]), Err(FrustumError::Size(0, 1)));
     }
 }

@@ -199,7 +199,7 @@ mod tests {
     }
 
     fn views() -> [View; 2] {
-        let frustum = Frustum::from_fov_y(0.9, SIZE).unwrap().sheared(0.2);
+        let frustum = Frustum::from_fov(0.9, SIZE).unwrap().sheared(0.2);
         let parallel = OrthographicBox::from_height(2.0, SIZE).unwrap();
         [Projection::Perspective(frustum), Projection::Orthographic(parallel)]
             .map(|projection| Orbit { azimuth_rad: 0.6, ..Default::default() }.view(projection, SIZE))

@@ -54,7 +54,7 @@ mod tests {
     }
 
     fn middle() -> View {
-        let frustum = Frustum::from_fov_y(1.0, [100, 100]).unwrap();
+        let frustum = Frustum::from_fov(1.0, [100, 100]).unwrap();
         Orbit::default().view(Projection::Perspective(frustum), [100, 100])
     }
 

@@ -63,7 +63,7 @@ mod tests {
     }
 
     fn orbit(azimuth_deg: f64, distance_m: f64) -> View {
-        let frustum = Frustum::from_fov_y(0.7, SIZE).unwrap();
+        let frustum = Frustum::from_fov(0.7, SIZE).unwrap();
         let orbit = Orbit { azimuth_rad: azimuth_deg.to_radians(), elevation_rad: 0.0, distance_m };
         orbit.view(Projection::Perspective(frustum), SIZE)
     }

@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn the_middle_is_that_of_what_is_in_front() {
-        let frustum = Frustum::from_fov_y(1.0, [4, 3]).unwrap();
+        let frustum = Frustum::from_fov(1.0, [4, 3]).unwrap();
         let at = |distance_m| {
             let orbit = Orbit { distance_m, ..Orbit::default() };
             let corners = [DVec3::splat(-0.5), DVec3::splat(0.5)];

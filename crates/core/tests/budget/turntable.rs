@@ -44,7 +44,7 @@ impl Turntable {
         let occupancy = Occupancy::new(ranges.normalised(normalised), None, &Visibility::new(&parameters));
         let map = SkipMap::new(&occupancy, Structure::Distance);
         let size = [SIDE_PX; 2];
-        let projection = Projection::Perspective(Frustum::from_fov_y(0.8, size).unwrap());
+        let projection = Projection::Perspective(Frustum::from_fov(0.8, size).unwrap());
         let views: Vec<_> = (0..CASTS)
             .map(|cast| {
                 let azimuth_rad = std::f64::consts::TAU * cast as f64 / CASTS as f64;

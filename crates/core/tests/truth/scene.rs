@@ -76,8 +76,8 @@ pub(crate) fn exact_settings(window: Window, transfer: TransferFunction) -> Sett
     Settings { early_termination: None, ..Settings::new(window, transfer) }
 }
 
-pub(crate) fn perspective(fov_y_rad: f64, size: [u32; 2]) -> Projection {
-    Projection::Perspective(Frustum::from_fov_y(fov_y_rad, size).unwrap())
+pub(crate) fn perspective(fov_rad: f64, size: [u32; 2]) -> Projection {
+    Projection::Perspective(Frustum::from_fov(fov_rad, size).unwrap())
 }
 
 pub(crate) fn orthographic(height_m: f64, size: [u32; 2]) -> Projection {

@@ -12,7 +12,7 @@ const PLAIN: GridSettings = GridSettings { tear_px: 1.0, close_px: 64.0 };
 
 /// An eye at world (0, 0, 1), looking along −Z.
 fn before_plates() -> View {
-    let frustum = Frustum::from_fov_y(0.9, SIZE).unwrap();
+    let frustum = Frustum::from_fov(0.9, SIZE).unwrap();
     let orbit = Orbit { azimuth_rad: 0.0, elevation_rad: 0.0, distance_m: 1.0 };
     orbit.view(Projection::Perspective(frustum), SIZE)
 }

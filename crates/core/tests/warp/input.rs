@@ -54,7 +54,7 @@ fn parallel_projections_are_refused() {
 
 #[test]
 fn poses_and_windows_without_meaning_are_refused() {
-    let window = Frustum::from_fov_y(0.9, SIZE).unwrap();
+    let window = Frustum::from_fov(0.9, SIZE).unwrap();
     let seen_through = |frustum| View { projection: Projection::Perspective(frustum), ..front() };
     let posed = |view_from_world| View { view_from_world, ..front() };
     for view in [

@@ -47,7 +47,7 @@ fn a_plane_that_the_eye_comes_to_stays_in_front() {
 #[test]
 fn windows_and_sizes_may_differ() {
     let (cast, view) = (caster_of(Phantom::Sphere), front());
-    let frustum = Frustum::from_fov_y(0.7, [90, 110]).unwrap().sheared(0.05);
+    let frustum = Frustum::from_fov(0.7, [90, 110]).unwrap().sheared(0.05);
     let wanted = View { projection: Projection::Perspective(frustum), size: [90, 110], ..view };
     let warped = quad(&view, &cast(&view), &wanted, 0.7).unwrap();
     let error = dssim(&warped, &cast(&wanted));

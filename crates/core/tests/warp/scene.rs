@@ -17,7 +17,7 @@ pub(crate) const SIZE: [u32; 2] = [149, 131];
 
 /// A view of the volume that fills most of the picture.
 pub(crate) fn front() -> View {
-    let frustum = Frustum::from_fov_y(0.9, SIZE).unwrap();
+    let frustum = Frustum::from_fov(0.9, SIZE).unwrap();
     Orbit { azimuth_rad: 0.4, elevation_rad: 0.3, distance_m: 1.4 }
         .view(Projection::Perspective(frustum), SIZE)
 }

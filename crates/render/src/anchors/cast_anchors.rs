@@ -93,7 +93,7 @@ impl Renderer {
             targets.push(target);
         }
         self.fill(gpu, plan, &targets)?;
-        let corners_world = prepared.parameters.occupied_corners_world();
+        let corners_world = prepared.occupied_corners_world();
         Ok(CastAnchors { plan: plan.clone(), targets, corners_world })
     }
 

@@ -64,7 +64,7 @@ impl UnderWay {
                 prepared.listing.map(|_| renderer.tile_pass.list(&gpu.device, view.size, spares.list()));
             let tiles = list.as_ref().map_or(&renderer.unused[1], |list| &list.tiles);
             let group = renderer.target_group(gpu, &target, [&states, tiles]);
-            let covered = Squares::covered(&view, &prepared.parameters.occupied_corners_world());
+            let covered = Squares::covered(&view, &prepared.occupied_corners_world());
             let stale = target.drawn.clone();
             target.drawn = stale.around(&covered);
             let rays = ViewUniform::new(&prepared.parameters, &view);

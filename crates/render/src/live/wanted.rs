@@ -92,7 +92,7 @@ impl Wanted {
 
     /// Pixels of all views in which something may be seen.
     pub(super) fn covered_px(&self) -> f64 {
-        let corners = self.settings.parameters.occupied_corners_world();
+        let corners = self.settings.occupied_corners_world();
         let covered = |view: View| {
             let covered = PixelRect::around(&view, corners);
             (covered.columns.len() * covered.rows.len()) as f64

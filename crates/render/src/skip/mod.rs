@@ -6,6 +6,7 @@
 mod baseline;
 mod block_ranges;
 mod block_texture;
+mod bounds_reading;
 mod builder;
 mod distance;
 mod field;
@@ -17,6 +18,7 @@ mod table;
 
 pub use baseline::DmBaseline;
 pub use block_ranges::GpuBlockRanges;
+pub use bounds_reading::BoundsReading;
 pub use builder::SkipBuilder;
 pub use kernels::SkipKernels;
 pub use range_search::RangeSearch;

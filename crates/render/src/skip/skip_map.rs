@@ -43,6 +43,26 @@ impl GpuSkipMap {
         }
     }
 
+    /// Hands out the numbers of the first octant, in rows of so many bytes.
+    pub(super) fn encode_read(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        into: &wgpu::Buffer,
+        row_bytes: usize,
+    ) {
+        let [_, height, depth] = self.grid.dims();
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row_bytes as u32),
+            rows_per_image: Some(height as u32),
+        };
+        encoder.copy_texture_to_buffer(
+            self.texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: into, layout },
+            wgpu::Extent3d { depth_or_array_layers: depth as u32, ..self.texture.size() },
+        );
+    }
+
     /// The blocks.
     pub fn grid(&self) -> &BlockGrid {
         &self.grid

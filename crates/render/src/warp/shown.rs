@@ -17,7 +17,7 @@ pub struct Shown<'a> {
 impl<'a> Shown<'a> {
     /// A picture that was cast from a view with some settings.
     pub fn new(target: &'a Target, view: View, prepared: &Prepared) -> Self {
-        Self { target, view, reach: Reach::of(&view, &prepared.parameters().occupied_corners_world()) }
+        Self { target, view, reach: Reach::of(&view, &prepared.occupied_corners_world()) }
     }
 
     /// The wanted pixels that may show something of the picture between two inverse depths, 1/m.

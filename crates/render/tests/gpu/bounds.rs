@@ -12,8 +12,9 @@ use wheatstone_core::transfer::TransferFunction;
 use wheatstone_core::view::View;
 use wheatstone_core::volume::{Encoding, Grid, Volume, Voxels};
 use wheatstone_core::warp::GridSettings;
+use wheatstone_render::skip::{SkipBuilder, SkipKernels, Structure};
 use wheatstone_render::warp::{Picture, Shown, Warps};
-use wheatstone_render::{GpuVolume, Prepared, Sources, Target, TexelFormat};
+use wheatstone_render::{GpuVolume, Leap, Prepared, Sources, Target, TexelFormat};
 
 const FORMAT: TexelFormat = TexelFormat::R16FloatOf8Bit;
 
@@ -62,6 +63,29 @@ fn pictures_and_warps_are_the_same_with_bounds() {
             let (whole, within) = (pictures(&parameters), pictures(&bounded));
             assert!(whole.0.color.iter().any(|color| color[3] > 0.5), "{eye}");
             assert!(whole == within, "{eye}");
+        }
+        let kernels = SkipKernels::new(gpu).unwrap();
+        let mut builder = SkipBuilder::new(gpu, &kernels, &uploaded, BlockSize::cube(2).unwrap()).unwrap();
+        let view = middle([149, 131], DVec3::new(0.4, 0.3, 1.3));
+        for structure in [Structure::Distance, Structure::Anisotropic] {
+            let map = builder.map(gpu, &parameters, structure).unwrap();
+            let leap = Leap::EmptyBlocks(&map);
+            let sources = Sources { leap, ..Sources::volume(&uploaded) };
+            let prepared = renderer.prepare(gpu, &sources, parameters.clone()).unwrap();
+            let mut cast = || {
+                let mut targets = [Target::new(gpu, view.size).unwrap()];
+                renderer.render(gpu, &prepared, &[view], &mut targets).unwrap();
+                targets[0].read(gpu).unwrap().image
+            };
+            let before = cast();
+            assert_eq!(prepared.occupied_corners_world(), parameters.occupied_corners_world());
+            let reading = map.read_bounds(gpu).unwrap();
+            gpu.wait().unwrap();
+            let bounds = reading.poll().unwrap().unwrap();
+            assert_eq!(bounds, occupancy.bounds(), "{structure:?}");
+            prepared.know_occupied(bounds);
+            assert_eq!(prepared.occupied_corners_world(), bounded.occupied_corners_world());
+            assert!(cast() == before, "{structure:?}");
         }
     });
 }

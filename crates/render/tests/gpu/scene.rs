@@ -86,12 +86,12 @@ pub(crate) fn placement(volume: &Volume) -> Placement {
     Placement::new(volume, world_from_patient(volume.grid(), AnatomicalDirection::Superior))
 }
 
-pub(crate) fn perspective(fov_y_rad: f64, size: [u32; 2]) -> Projection {
-    Projection::Perspective(Frustum::from_fov_y(fov_y_rad, size).unwrap())
+pub(crate) fn perspective(fov_rad: f64, size: [u32; 2]) -> Projection {
+    Projection::Perspective(Frustum::from_fov(fov_rad, size).unwrap())
 }
 
-pub(crate) fn off_axis(fov_y_rad: f64, size: [u32; 2], tangent: f64) -> Projection {
-    Projection::Perspective(Frustum::from_fov_y(fov_y_rad, size).unwrap().sheared(tangent))
+pub(crate) fn off_axis(fov_rad: f64, size: [u32; 2], tangent: f64) -> Projection {
+    Projection::Perspective(Frustum::from_fov(fov_rad, size).unwrap().sheared(tangent))
 }
 
 pub(crate) fn orthographic(height_m: f64, size: [u32; 2]) -> Projection {

@@ -62,7 +62,7 @@ pub(crate) fn wanted(random: &mut fastrand::Rng, view: &View) -> View {
         return moved;
     }
     let size = [random.u32(90..170), random.u32(70..150)];
-    let frustum = Frustum::from_fov_y(0.7 + 0.4 * random.f64(), size).unwrap().sheared(0.05);
+    let frustum = Frustum::from_fov(0.7 + 0.4 * random.f64(), size).unwrap().sheared(0.05);
     View { projection: Projection::Perspective(frustum), size, ..moved }
 }
 

@@ -6,7 +6,7 @@ use wheatstone_core::stereo::Epipolar;
 use wheatstone_core::view::{Frustum, Orbit, Projection, Rig, View};
 
 const EYE_DISTANCE_M: f64 = 0.065;
-const FOV_Y_DEG: f64 = 110.0;
+const FOV_DEG: f64 = 110.0;
 
 /// Two parallel eyes with pictures of a size in pixels.
 #[derive(Debug, Clone, Copy)]
@@ -17,7 +17,7 @@ pub(super) struct Eyes {
 impl Eyes {
     /// Views of the left and the right eye at a distance from the sphere around a cube of 1 m, turned about the vertical axis.
     pub(super) fn views(&self, distance_m: f64, azimuth_rad: f64) -> Result<[View; 2], Failure> {
-        let frustum = Frustum::from_fov_y(FOV_Y_DEG.to_radians(), self.size).map_err(Failure::input)?;
+        let frustum = Frustum::from_fov(FOV_DEG.to_radians(), self.size).map_err(Failure::input)?;
         let orbit = Orbit { azimuth_rad, elevation_rad: 0.0, distance_m: distance_m + radius_m() };
         let middle = orbit.view(Projection::Perspective(frustum), self.size);
         let eyes = Rig::Stereo { eye_distance_m: EYE_DISTANCE_M, convergence_m: f64::INFINITY };

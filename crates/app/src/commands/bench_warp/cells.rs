@@ -79,7 +79,7 @@ mod tests {
         let mut engine = Engine::cpu(&volume, StorageKind::lossless_for(&volume));
         let shot = engine.prepare(&CastParameters::new(&settings, &placement), &Skipping::AUTO).unwrap();
         let size = [96, 64];
-        let frustum = Frustum::from_fov_y(1.2, size).unwrap();
+        let frustum = Frustum::from_fov(1.2, size).unwrap();
         let view = Orbit { distance_m: 2.0, ..Orbit::default() }.view(Projection::Perspective(frustum), size);
         let cells = Cells::of(&mut engine, shot, &view).unwrap();
         let [columns, rows] = cells.grid.dims();

@@ -24,8 +24,9 @@ pub(crate) struct Camera {
     pub(crate) elevation_deg: f64,
     /// From what it looks at, metres.
     pub(crate) distance_m: f64,
-    /// Vertical field of view, degrees.
-    pub(crate) fov_y_deg: f64,
+    /// Field of view of the picture's shorter side, degrees.
+    #[serde(alias = "fov_y_deg")]
+    pub(crate) fov_deg: f64,
 }
 
 /// A side of the volume to look at.
@@ -69,15 +70,9 @@ impl Face {
 }
 
 impl Default for Camera {
-    /// The whole volume, from a little to the right and above.
+    /// All of a box with sides of 1 m, which no volume exceeds, from a little to the right and above.
     fn default() -> Self {
-        Self {
-            target_m: DVec3::ZERO,
-            azimuth_deg: 30.0,
-            elevation_deg: 15.0,
-            distance_m: 1.7,
-            fov_y_deg: 40.0,
-        }
+        Self { target_m: DVec3::ZERO, azimuth_deg: 30.0, elevation_deg: 15.0, distance_m: 2.4, fov_deg: 40.0 }
     }
 }
 
@@ -88,10 +83,9 @@ impl Camera {
         self.elevation_deg = (self.elevation_deg + up_deg).clamp(-90.0, 90.0);
     }
 
-    /// Moves sideways by parts of what the picture's height shows at the target.
+    /// Moves sideways by parts of what the picture's shorter side shows at the target.
     pub(super) fn pan(&mut self, right: f64, up: f64) {
-        let height_m = 2.0 * self.distance_m * (0.5 * self.fov_y_deg.to_radians()).tan();
-        self.move_target(DVec3::new(right, up, 0.0) * height_m);
+        self.move_target(DVec3::new(right, up, 0.0) * self.shown_m());
     }
 
     /// Comes so many times as near.
@@ -117,9 +111,14 @@ impl Camera {
         self.target_m = DVec3::ZERO;
     }
 
+    /// What the picture's shorter side shows at the target, metres.
+    pub(super) fn shown_m(&self) -> f64 {
+        2.0 * self.distance_m * (0.5 * self.fov_deg.to_radians()).tan()
+    }
+
     /// The view of a picture of some size, pixels.
     pub(crate) fn view(&self, size: [u32; 2]) -> Result<View, FrustumError> {
-        let frustum = Frustum::from_fov_y(self.fov_y_deg.to_radians(), size)?;
+        let frustum = Frustum::from_fov(self.fov_deg.to_radians(), size)?;
         let orbit = Orbit {
             azimuth_rad: self.azimuth_deg.to_radians(),
             elevation_rad: self.elevation_deg.to_radians(),
@@ -139,7 +138,7 @@ impl Camera {
         within("azimuth_deg", self.azimuth_deg, -360.0, 360.0)?;
         within("elevation_deg", self.elevation_deg, -90.0, 90.0)?;
         within("distance_m", self.distance_m, DISTANCES_M[0], DISTANCES_M[1])?;
-        within("fov_y_deg", self.fov_y_deg, 1.0, 170.0)
+        within("fov_deg", self.fov_deg, 1.0, 170.0)
     }
 
     fn move_target(&mut self, by_in_view: DVec3) {
@@ -164,6 +163,7 @@ fn wrapped(degrees: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::state::{Arrangement, Stereo};
 
     fn eye_of(camera: &Camera) -> DVec3 {
         camera.view([10, 10]).unwrap().view_from_world.inverse().translation
@@ -182,13 +182,13 @@ mod tests {
     }
 
     #[test]
-    fn a_pan_by_the_pictures_height_moves_the_target_from_edge_to_edge() {
+    fn a_pan_by_the_pictures_shorter_side_moves_the_target_from_edge_to_edge() {
         let mut camera = Camera::default();
         let before = camera;
         camera.pan(0.0, 1.0);
         let view = before.view([100, 100]).unwrap();
         let target = view.view_from_world.transform_point3(camera.target_m);
-        let half = (0.5 * before.fov_y_deg.to_radians()).tan();
+        let half = (0.5 * before.fov_deg.to_radians()).tan();
         assert!((target.y / -target.z - 2.0 * half).abs() < 1e-12 && target.x.abs() < 1e-12);
     }
 
@@ -210,6 +210,28 @@ mod tests {
         camera.turn(0.1_f64.atan().to_degrees(), 0.0);
         let seen = camera.view([10, 10]).unwrap().view_from_world.transform_point3(right_m);
         assert!((seen.x / -seen.z).abs() < 0.01, "{seen}");
+    }
+
+    #[test]
+    fn the_first_view_shows_all_of_a_box_in_pictures_of_any_shape_and_to_both_eyes() {
+        let corners = [-0.5, 0.5].into_iter().flat_map(|x| {
+            [-0.5, 0.5].into_iter().flat_map(move |y| [-0.5, 0.5].map(|z| DVec3::new(x, y, z)))
+        });
+        let camera = Camera::default();
+        for size in [[970, 720], [485, 720], [100, 800], [800, 100], [64, 64]] {
+            for arrangement in [Arrangement::Mono, Arrangement::SideBySide, Arrangement::Anaglyph] {
+                let stereo = Stereo { arrangement, ..Stereo::default() };
+                let eye_size = stereo.eye_size(size);
+                for view in stereo.views(&camera.view(eye_size).unwrap(), camera.distance_m) {
+                    for corner in corners.clone() {
+                        let at = view.pixel_position(corner).unwrap();
+                        let [width, height] = eye_size.map(f64::from);
+                        let is_inside = (0.0..width).contains(&at.x) && (0.0..height).contains(&at.y);
+                        assert!(is_inside, "{size:?} {arrangement:?} {corner}: {at}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

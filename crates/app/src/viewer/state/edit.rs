@@ -20,7 +20,7 @@ pub(crate) enum Edit {
         right_deg: f64,
         up_deg: f64,
     },
-    /// Eye and target move sideways by parts of what the picture's height shows.
+    /// Eye and target move sideways by parts of what the shorter side of an eye's picture shows.
     Pan {
         right: f64,
         up: f64,
@@ -42,7 +42,7 @@ pub(crate) enum Edit {
     Face(Face),
     /// The eye goes where it was at first.
     ResetCamera,
-    /// Vertical field of view, degrees.
+    /// Field of view of the shorter side of an eye's picture, degrees.
     FieldOfView(f64),
     Mode(ModeName),
     #[serde(with = "shading_text")]
@@ -100,8 +100,8 @@ pub(crate) enum Edit {
     Warp(WarpName),
     /// What volumetric warps keep, and how rays step through it.
     Layers(Layers),
-    /// Time from one refresh to the next, ms.
-    Refresh(f64),
+    /// Time from one refresh to the next, ms; none is the display's.
+    Refresh(Option<f64>),
 }
 
 impl Edit {
@@ -122,7 +122,7 @@ impl Edit {
             Self::Turn { right_deg, up_deg } => camera.turn(right_deg, up_deg),
             Self::Face(face) => camera.face(face),
             Self::ResetCamera => *camera = Camera::default(),
-            Self::FieldOfView(degrees) => camera.fov_y_deg = degrees,
+            Self::FieldOfView(degrees) => camera.fov_deg = degrees,
             Self::Mode(mode) => look.mode = mode,
             Self::Shading(shading) => look.shading = shading,
             Self::Isovalue(value) => look.isovalue = value.clamp(0.0, 1.0),

@@ -205,9 +205,8 @@ impl LightField {
     /// What each view shows, in order, of a size: on the screen a disc about what the camera looks at is as large as in its picture.
     pub(crate) fn views(&self, camera: &Camera, size: [u32; 2]) -> Result<Vec<View>, String> {
         let seen = camera.view(size).map_err(|error| error.to_string())?;
-        let shown_m = 2.0 * camera.distance_m * (0.5 * camera.fov_y_deg.to_radians()).tan();
         let [width_m, height_m] = self.screen_size_m();
-        let display_from_world = DAffine3::from_scale(DVec3::splat(width_m.min(height_m) / shown_m))
+        let display_from_world = DAffine3::from_scale(DVec3::splat(width_m.min(height_m) / camera.shown_m()))
             * DAffine3::from_translation(DVec3::Z * camera.distance_m)
             * seen.view_from_world;
         let views = match self.display() {

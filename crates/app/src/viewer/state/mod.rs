@@ -130,6 +130,14 @@ impl State {
         })
     }
 
+    /// The warp that is shown: the one that is asked for, unless a picture is to be shown to two eyes by one that does not part them.
+    pub(crate) fn warp(&self) -> WarpName {
+        match self.pace.warp {
+            WarpName::None | WarpName::Quad if self.stereo.shows_one_cast_to_two_eyes() => WarpName::Grid,
+            asked => asked,
+        }
+    }
+
     /// What the picture can be arranged as.
     pub(crate) fn arrangements(&self) -> Vec<Arrangement> {
         let has_panel = self.light_field.lenses().is_some();
@@ -176,6 +184,7 @@ fn within(name: &str, value: f64, lo: f64, hi: f64) -> Result<(), String> {
 mod tests {
     use super::*;
     use crate::look::ModeName;
+    use std::time::Duration;
     use wheatstone_core::scene::Shading;
     use wheatstone_core::volume::VoxelType;
 
@@ -211,7 +220,7 @@ mod tests {
         };
         assert!(message("\"wheatstone_view\": 1", "\"wheatstone_view\": 2").contains("version 2"));
         assert!(message("\"distance_m\":", "\"distnace_m\":").contains("distnace_m"));
-        assert!(message("\"fov_y_deg\": 40.0", "\"fov_y_deg\": 400.0").contains("400"));
+        assert!(message("\"fov_deg\": 40.0", "\"fov_deg\": 400.0").contains("400"));
         assert!(message("directional:5", "directional:500").contains("directional"));
         assert!(message("0.125", "1.125").contains("opacity"));
         assert!(message("\"steps\": 32", "\"steps\": 0").contains("steps"));
@@ -261,6 +270,46 @@ mod tests {
         let mut lonely = state.clone();
         (1..points).for_each(|_| lonely.apply(&Edit::RemoveOpacityPoint(0)).unwrap());
         assert!(lonely.apply(&Edit::RemoveOpacityPoint(0)).unwrap_err().to_string().contains("last point"));
+    }
+
+    #[test]
+    fn one_cast_for_two_eyes_is_shown_by_a_warp_that_parts_them() {
+        let mut state = State::default();
+        for (arrangement, method, parts) in [
+            (Arrangement::Mono, EyeMethod::OneCast, false),
+            (Arrangement::SideBySide, EyeMethod::OneCast, true),
+            (Arrangement::Anaglyph, EyeMethod::OneCast, true),
+            (Arrangement::Anaglyph, EyeMethod::TwoCasts, false),
+            (Arrangement::LightField, EyeMethod::OneCast, false),
+        ] {
+            (state.stereo.arrangement, state.stereo.method) = (arrangement, method);
+            for asked in WarpName::ALL {
+                state.pace.warp = asked;
+                let has_parallax = matches!(asked, WarpName::Grid | WarpName::Volumetric);
+                let expected = if parts && !has_parallax { WarpName::Grid } else { asked };
+                assert_eq!(state.warp(), expected, "{arrangement:?} {method:?} {asked:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn views_hold_the_displays_refreshes_or_fixed_ones() {
+        let mut state = State::default();
+        assert!(state.to_json().unwrap().contains("\"refresh_ms\": null"));
+        assert_eq!(State::from_json(&state.to_json().unwrap()).unwrap(), state);
+        state.apply(&Edit::Refresh(Some(25.0))).unwrap();
+        let of_display = Duration::from_millis(7);
+        assert_eq!(state.pace.refresh_time(of_display), Duration::from_millis(25));
+        assert_eq!(State::from_json(&state.to_json().unwrap()).unwrap(), state);
+        assert!(state.apply(&Edit::Refresh(Some(0.0))).is_err());
+        state.apply(&Edit::Refresh(None)).unwrap();
+        assert_eq!(state.pace.refresh_time(of_display), of_display);
+    }
+
+    #[test]
+    fn the_field_of_view_had_another_name() {
+        let json = edited().to_json().unwrap();
+        assert_eq!(State::from_json(&json.replace("fov_deg", "fov_y_deg")).unwrap(), edited());
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::within;
 use crate::layering::Layering;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 use wheatstone_core::warp::{LayerThresholds, VolumetricSettings};
 use wheatstone_render::{LAYERS, LayersError};
 
@@ -11,8 +12,8 @@ use wheatstone_render::{LAYERS, LayersError};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Pace {
-    /// Time from one refresh to the next while something is being cast, ms.
-    pub(crate) refresh_ms: f64,
+    /// Time from one refresh to the next while something is being cast, ms; none is the display's.
+    pub(crate) refresh_ms: Option<f64>,
     /// How the newest whole picture is shown from where the eye is now.
     pub(crate) warp: WarpName,
     /// What volumetric warps keep, and how rays step through it.
@@ -84,13 +85,18 @@ impl WarpName {
 
 impl Default for Pace {
     fn default() -> Self {
-        Self { refresh_ms: 40.0, warp: WarpName::Grid, layers: Layers::default() }
+        Self { refresh_ms: None, warp: WarpName::Grid, layers: Layers::default() }
     }
 }
 
 impl Pace {
+    /// From one refresh to the next, on a display of which that is the time.
+    pub(crate) fn refresh_time(&self, of_display: Duration) -> Duration {
+        self.refresh_ms.map_or(of_display, |ms| Duration::from_secs_f64(ms / 1e3))
+    }
+
     pub(super) fn check(&self) -> Result<(), String> {
-        within("refresh_ms", self.refresh_ms, 1.0, 1000.0)?;
+        self.refresh_ms.map_or(Ok(()), |ms| within("refresh_ms", ms, 1.0, 1000.0))?;
         self.layers.layering().map(drop)
     }
 }

@@ -86,6 +86,16 @@ impl Default for Stereo {
 }
 
 impl Stereo {
+    /// Whether the picture is arranged for two eyes.
+    pub(crate) fn has_two_eyes(&self) -> bool {
+        matches!(self.arrangement, Arrangement::SideBySide | Arrangement::Anaglyph)
+    }
+
+    /// Whether two eyes are shown what is cast for one in their middle.
+    pub(crate) fn shows_one_cast_to_two_eyes(&self) -> bool {
+        self.has_two_eyes() && self.method == EyeMethod::OneCast
+    }
+
     /// Size of each eye's picture within an area, pixels.
     pub(crate) fn eye_size(&self, [width, height]: [u32; 2]) -> [u32; 2] {
         match self.arrangement {
@@ -100,13 +110,10 @@ impl Stereo {
 
     /// What the eyes see, left one first; both see what is `convergence_m` away at the same place.
     pub(crate) fn views(&self, middle: &View, convergence_m: f64) -> Vec<View> {
-        let rig = match self.arrangement {
-            Arrangement::Mono | Arrangement::Quilt | Arrangement::LightField | Arrangement::Panel => {
-                Rig::Mono
-            }
-            Arrangement::SideBySide | Arrangement::Anaglyph => {
-                Rig::Stereo { eye_distance_m: self.eye_distance_m, convergence_m }
-            }
+        let rig = if self.has_two_eyes() {
+            Rig::Stereo { eye_distance_m: self.eye_distance_m, convergence_m }
+        } else {
+            Rig::Mono
         };
         rig.views(middle)
     }

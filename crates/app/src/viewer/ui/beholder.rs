@@ -7,33 +7,23 @@ use wheatstone_core::view::{Projection, View};
 /// Whose eyes the picture is for.
 #[derive(Debug)]
 pub(crate) enum Beholder {
-    /// The camera's, which panels, mouse and keys move, at the refreshes that are asked for.
+    /// The camera's, which panels, mouse and keys move.
     Camera,
     /// A headset's, which nothing here moves.
     Headset {
         /// What the left and the right eye see, in world space; none as long as they see nothing.
         views: Option<Box<[View; 2]>>,
-        /// Of its refreshes, ms.
-        period_ms: f32,
     },
 }
 
 impl Beholder {
-    /// Time that a refresh has, ms.
-    pub(super) fn refresh_ms(&self, state: &State) -> f32 {
-        match *self {
-            Self::Camera => state.pace.refresh_ms as f32,
-            Self::Headset { period_ms, .. } => period_ms,
-        }
-    }
-
     /// The part of the window's middle that the picture takes: all of it, or for a headset the largest rectangle in which it is not
     /// distorted.
     pub(super) fn area(&self, middle: Rect, arrangement: Arrangement) -> Rect {
-        let Self::Headset { views: Some(views), .. } = self else { return middle };
+        let Self::Headset { views: Some(views) } = self else { return middle };
         let Projection::Perspective(lens) = views[0].projection else { return middle };
-        let pictures = if arrangement == Arrangement::SideBySide { 2.0 } else { 1.0 };
-        let width_over_height = pictures * ((lens.right - lens.left) / (lens.up - lens.down)) as f32;
+        let width_over_height =
+            beside_each_other(arrangement) * ((lens.right - lens.left) / (lens.up - lens.down)) as f32;
         let height = middle.height().min(middle.width() / width_over_height);
         Rect::from_center_size(middle.center(), Vec2::new(width_over_height * height, height))
     }
@@ -55,7 +45,7 @@ impl Beholder {
                     vec![middle]
                 }
             }
-            Self::Headset { views, .. } => views.iter().flat_map(|views| views.iter()).copied().collect(),
+            Self::Headset { views } => views.iter().flat_map(|views| views.iter()).copied().collect(),
         };
         if is_side_by_side {
             let (left, right) = area.split_left_right_at_fraction(0.5);
@@ -64,6 +54,16 @@ impl Beholder {
             views.into_iter().zip([area]).collect()
         }
     }
+}
+
+/// The shorter side of an eye's picture within the picture's area, points: what drags are measured by.
+pub(super) fn shorter_side(area: Rect, arrangement: Arrangement) -> f32 {
+    area.height().min(area.width() / beside_each_other(arrangement))
+}
+
+/// Pictures of eyes from left to right.
+fn beside_each_other(arrangement: Arrangement) -> f32 {
+    if arrangement == Arrangement::SideBySide { 2.0 } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -82,7 +82,7 @@ mod tests {
             size: [640, 720],
             shaded_from: None,
         };
-        let headset = Beholder::Headset { views: Some(Box::new([view; 2])), period_ms: 11.0 };
+        let headset = Beholder::Headset { views: Some(Box::new([view; 2])) };
         let middle = Rect::from_min_size(Pos2::new(10.0, 20.0), vec2(650.0, 400.0));
         let mut state = State::default();
         let one = headset.area(middle, Arrangement::Mono);

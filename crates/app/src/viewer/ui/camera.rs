@@ -24,7 +24,7 @@ pub(super) fn show(tool: &mut Tool, ui: &mut Ui, state: &State, asked: &mut Aske
     });
     let camera = &state.camera;
     rows(ui, "camera", |ui| {
-        slider(ui, "Field of view", camera.fov_y_deg, 10.0..=120.0, asked, Edit::FieldOfView);
+        slider(ui, "Field of view", camera.fov_deg, 10.0..=120.0, asked, Edit::FieldOfView);
         ui.label("Eye");
         ui.weak(format!(
             "{:.0}° {:.0}° {:.2} m",

@@ -53,6 +53,8 @@ pub(crate) struct Shown<'a> {
     /// What casts, and how fine the picture is.
     pub(crate) device: &'a str,
     pub(crate) quality: &'a str,
+    /// From one refresh to the next, ms.
+    pub(crate) refresh_ms: f32,
 }
 
 /// What panels remember of themselves.
@@ -211,6 +213,7 @@ mod tests {
                     timings: &timings,
                     device: "",
                     quality: "",
+                    refresh_ms: 17.0,
                 };
                 let pass = desk.show(ui, &shown);
                 picture = pass.picture;
@@ -260,16 +263,19 @@ mod tests {
         let state = State::default();
         let events = drag([60.0, 150.0], [160.0, 200.0], Button::Left, false);
         let orbited = assert_same_however_many_at_a_time(&state, &events);
-        // A picture's height is half a turn.
+        // The shorter side of a picture is half a turn.
+        let side = play(&Beholder::Camera, state.clone(), &[], 1).picture.width();
+        assert!(side < 500.0, "beside the panels");
+        let side = f64::from(side);
         let turned_deg = orbited.camera.azimuth_deg - state.camera.azimuth_deg;
-        assert!((turned_deg + 180.0 * 100.0 / 500.0).abs() < 1e-4, "{turned_deg}");
+        assert!((turned_deg + 180.0 * 100.0 / side).abs() < 1e-4, "{turned_deg}");
         let raised_deg = orbited.camera.elevation_deg - state.camera.elevation_deg;
-        assert!((raised_deg - 180.0 * 50.0 / 500.0).abs() < 1e-4, "{raised_deg}");
+        assert!((raised_deg - 180.0 * 50.0 / side).abs() < 1e-4, "{raised_deg}");
         let events = drag([60.0, 150.0], [160.0, 150.0], Button::Left, true);
         let windowed = assert_same_however_many_at_a_time(&state, &events);
         assert_eq!(windowed.camera, state.camera);
         let width = |state: &State| state.transfer.window[1] - state.transfer.window[0];
-        assert!((width(&windowed) / width(&state) - 0.4_f64.exp()).abs() < 1e-3);
+        assert!((width(&windowed) / width(&state) - (200.0 / side).exp()).abs() < 1e-3);
         assert_same_however_many_at_a_time(&state, &drag([60.0, 150.0], [90.0, 110.0], Button::Right, false));
     }
 
@@ -377,6 +383,7 @@ mod tests {
                     progress: None,
                     notes: &[],
                     timings: &timings,
+                    refresh_ms: 17.0,
                     device: "",
                     quality: "",
                 };
@@ -392,7 +399,7 @@ mod tests {
     /// Before both eyes of a headset there is what the first camera sees.
     fn headset() -> Beholder {
         let view = State::default().camera.view([640, 720]).unwrap();
-        Beholder::Headset { views: Some(Box::new([view; 2])), period_ms: 11.0 }
+        Beholder::Headset { views: Some(Box::new([view; 2])) }
     }
 
     #[test]
@@ -432,13 +439,13 @@ mod tests {
     fn panels_hold_nothing_that_a_headset_does_not_follow() {
         let mut state = State::default();
         state.stereo.arrangement = crate::viewer::state::Arrangement::SideBySide;
-        let of_camera = ["Camera", "Refresh, ms"];
+        let of_camera = ["Camera", "Refresh"];
         let holds = |beholder: &Beholder, wanted: &str| {
             let texts = play_in(egui::vec2(800.0, 1200.0), beholder, state.clone(), &[], 1).texts;
             texts.iter().any(|text| text == wanted)
         };
         assert!(of_camera.iter().all(|text| holds(&Beholder::Camera, text) && !holds(&headset(), text)));
-        assert!(holds(&Beholder::Camera, "40 ms") && holds(&headset(), "11 ms"));
+        assert!(holds(&Beholder::Camera, "17 ms") && holds(&headset(), "17 ms"));
     }
 
     #[test]

@@ -18,10 +18,21 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, asked: &mut Asked) {
     let warps = WarpName::ALL.map(|warp| (warp, warp.name()));
     rows(ui, "pace", |ui| {
         if let Beholder::Camera = shown.beholder {
-            slider(ui, "Refresh, ms", pace.refresh_ms, 5.0..=200.0, asked, Edit::Refresh);
+            let shown_ms = f64::from(shown.refresh_ms);
+            let rates = [(None, "as the display"), (pace.refresh_ms.or(Some(shown_ms)), "fixed")];
+            choice(ui, "Refresh", &rates, pace.refresh_ms, asked, Edit::Refresh);
+            if let Some(refresh_ms) = pace.refresh_ms {
+                slider(ui, "Every, ms", refresh_ms, 5.0..=200.0, asked, |ms| Edit::Refresh(Some(ms)));
+            }
         }
         choice(ui, "Warp", &warps, pace.warp, asked, Edit::Warp);
     });
+    if let Beholder::Camera = shown.beholder
+        && shown.state.warp() != pace.warp
+    {
+        let [asked, instead] = [pace.warp, shown.state.warp()].map(WarpName::name);
+        ui.weak(format!("{instead}: one cast by {asked} is the same to both eyes"));
+    }
 }
 
 fn graph(ui: &mut Ui, shown: &Shown<'_>) {
@@ -29,7 +40,7 @@ fn graph(ui: &mut Ui, shown: &Shown<'_>) {
     let (area, _) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::hover());
     let painter = ui.painter_at(area);
     painter.rect_filled(area, 3.0, WELL);
-    let budget_ms = shown.beholder.refresh_ms(shown.state);
+    let budget_ms = shown.refresh_ms;
     let points_per_ms = BUDGET_AT * HEIGHT / budget_ms;
     let frames = shown.timings.recent();
     let step = width / shown.timings.most_recent() as f32;

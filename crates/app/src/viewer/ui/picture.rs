@@ -1,5 +1,6 @@
 //! The picture's area: mouse, keys that are held, dropped files.
 
+use super::beholder::shorter_side;
 use super::drag::Drag;
 use super::pointer::scroll;
 use super::{Asked, Beholder, Desk, Shown, handles, pointer};
@@ -22,7 +23,8 @@ pub(super) fn show(desk: &mut Desk, ui: &mut Ui, area: Rect, shown: &Shown<'_>, 
     let moves = drag.as_ref().map_or(&[][..], |drag| &drag.moves);
     let is_held = handles::show(&mut desk.handles, ui, area, shown, &response, moves, asked);
     if let Some(Drag { button, modifiers, moves }) = drag.filter(|_| !is_held) {
-        let by = moves.into_iter().map(|by| by / area.height());
+        let side = shorter_side(area, shown.state.stereo.arrangement);
+        let by = moves.into_iter().map(|by| by / side);
         match shown.beholder {
             Beholder::Camera => {
                 by.for_each(|by| asked.edit(pointer::drag(desk.tool, button, modifiers, by)));

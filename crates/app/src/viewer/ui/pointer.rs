@@ -3,7 +3,7 @@
 use crate::viewer::state::{Edit, State};
 use egui::{Modifiers, PointerButton, Vec2};
 
-/// A turn by the picture's height, degrees.
+/// A turn by the shorter side of an eye's picture, degrees.
 const ORBIT_DEG: f64 = 180.0;
 
 /// Metres that a notch of the wheel flies, as a part of the distance.
@@ -40,7 +40,7 @@ impl Tool {
     }
 }
 
-/// What a drag by parts of the picture's height asks for (`by`: right and down).
+/// What a drag by parts of the shorter side of an eye's picture asks for (`by`: right and down).
 pub(super) fn drag(tool: Tool, button: PointerButton, modifiers: Modifiers, by: Vec2) -> Edit {
     let [right, down] = [f64::from(by.x), f64::from(by.y)];
     match button {
@@ -55,7 +55,7 @@ pub(super) fn drag(tool: Tool, button: PointerButton, modifiers: Modifiers, by: 
     }
 }
 
-/// The window of values, shifted and widened by a drag by parts of the picture's height (right and down).
+/// The window of values, shifted and widened by a drag by parts of the shorter side of an eye's picture (right and down).
 pub(super) fn window(by: Vec2) -> Edit {
     let [right, down] = [f64::from(by.x), f64::from(by.y)];
     Edit::WindowLevel { shift: -0.5 * down, stretch: (2.0 * right).exp() }

@@ -16,11 +16,10 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, asked: &mut Asked) {
     let methods = EyeMethod::ALL.map(|method| (method, method.name()));
     rows(ui, "stereo", |ui| {
         choice(ui, "Eyes", &arrangements, stereo.arrangement, asked, Edit::Arrangement);
-        let has_two_eyes = matches!(stereo.arrangement, Arrangement::SideBySide | Arrangement::Anaglyph);
-        if has_two_eyes || is_for_headset {
+        if stereo.has_two_eyes() || is_for_headset {
             choice(ui, "Method", &methods, stereo.method, asked, Edit::EyeMethod);
         }
-        if has_two_eyes && !is_for_headset {
+        if stereo.has_two_eyes() && !is_for_headset {
             slider(ui, "Apart, m", stereo.eye_distance_m, 0.0..=0.2, asked, Edit::EyeDistance);
         }
         if stereo.arrangement.is_of_display() && !is_for_headset {
