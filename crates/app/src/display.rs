@@ -28,7 +28,7 @@ pub(crate) struct DisplayArgs {
     rows: Option<u32>,
 
     /// Width and height of a quilt, pixels.
-    #[arg(long, value_name = "WxH", value_parser = spec::picture_size)]
+    #[arg(long, value_name = "WxH", value_parser = spec::display_picture_size)]
     quilt_size: Option<[u32; 2]>,
 
     /// Width of the screen over its height.

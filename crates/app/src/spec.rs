@@ -4,6 +4,7 @@ use glam::DVec3;
 use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 use wheatstone_core::cast::DIRECTIONAL_STEPS;
+use wheatstone_core::lightfield;
 use wheatstone_core::lit_sphere::Style;
 use wheatstone_core::scene::{BoundaryEnhancement, ClipPlane, MAX_DIRECTIONS, Shading};
 use wheatstone_core::skip::BlockSize;
@@ -47,13 +48,23 @@ pub(crate) fn convergence(text: &str) -> Result<f64, String> {
 
 /// `WIDTHxHEIGHT` in pixels.
 pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
-    let allowed = || {
-        format!("must be WIDTHxHEIGHT, each from 1 to {MOST_PICTURE_SIDE}, with at most {MOST_PIXELS} pixels")
-    };
-    let sides: [u32; 2] = separated(text, &['x', 'X']).ok_or_else(allowed)?;
-    let fits = sides.iter().all(|side| (1..=MOST_PICTURE_SIDE).contains(side))
-        && u64::from(sides[0]) * u64::from(sides[1]) <= MOST_PIXELS;
-    if fits { Ok(sides) } else { Err(allowed()) }
+    size_within(text, MOST_PICTURE_SIDE, MOST_PIXELS)
+}
+
+/// `WIDTHxHEIGHT` in pixels of what a light-field display is sent or shows, as its description may have them.
+pub(crate) fn display_picture_size(text: &str) -> Result<[u32; 2], String> {
+    size_within(text, lightfield::LONGEST_SIDE_PX, lightfield::MOST_PIXELS)
+}
+
+fn size_within(text: &str, most_side: u32, most_pixels: u64) -> Result<[u32; 2], String> {
+    separated(text, &['x', 'X'])
+        .filter(|sides: &[u32; 2]| {
+            sides.iter().all(|side| (1..=most_side).contains(side))
+                && u64::from(sides[0]) * u64::from(sides[1]) <= most_pixels
+        })
+        .ok_or_else(|| {
+            format!("must be WIDTHxHEIGHT, each from 1 to {most_side}, with at most {most_pixels} pixels")
+        })
 }
 
 /// Sides of a window, points.
@@ -315,6 +326,11 @@ mod tests {
         assert_eq!(picture_size("640x480"), Ok([640, 480]));
         for bad in ["0x5", "100000x100000", "16384x16384", "640", "640x480x3", "-1x5", "axb", ""] {
             assert!(picture_size(bad).is_err(), "{bad}");
+        }
+        assert_eq!(display_picture_size("32768x4096"), Ok([32_768, 4096]));
+        for bad in ["32769x1", "32768x4097", "0x5", ""] {
+            let error = display_picture_size(bad).unwrap_err();
+            assert!(error.contains("32768") && error.contains("134217728"), "{bad}: {error}");
         }
         assert_eq!(window_size("1280x800"), Ok([1280, 800]));
         assert!(window_size("1280x4097").is_err() && window_size("0x0").is_err());

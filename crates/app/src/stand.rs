@@ -80,6 +80,17 @@ impl StandArgs {
 }
 
 impl Stand {
+    /// From where to where the volume reaches, in words, with distances from the screen as `written`.
+    pub(crate) fn reach(&self, written: impl Fn(f64) -> String) -> String {
+        let (from_m, to_m) = (self.reach_m.start, self.reach_m.end);
+        let [from, to] = [from_m, to_m].map(|before_m| written(before_m.abs()));
+        match (from_m < 0.0, to_m > 0.0) {
+            (true, true) => format!("from {from} behind to {to} before the screen"),
+            (true, false) => format!("from {from} to {to} behind the screen"),
+            (false, _) => format!("from {from} to {to} before the screen"),
+        }
+    }
+
     /// Where the volume's world is at the display, picture by picture.
     pub(crate) fn displays_from_world(&self) -> impl Iterator<Item = DAffine3> {
         let stand = DAffine3::from_translation(DVec3::Z * self.before_screen_m)
@@ -95,5 +106,29 @@ impl Stand {
     /// Whether they are those of a turntable, be it of one.
     pub(crate) fn is_turning(&self) -> bool {
         self.is_turning
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reach_names_the_sides_of_the_screen_that_it_is_on() {
+        let reach = |reach_m: Range<f64>| {
+            let stand = Stand {
+                volume_size_m: 1.0,
+                reach_m,
+                before_screen_m: 0.0,
+                turned: Vec::new(),
+                is_turning: false,
+            };
+            stand.reach(|metres| format!("{metres} m"))
+        };
+        assert_eq!(reach(-0.25..0.5), "from 0.25 m behind to 0.5 m before the screen");
+        assert_eq!(reach(-900.5..-899.5), "from 900.5 m to 899.5 m behind the screen");
+        assert_eq!(reach(-1.0..0.0), "from 1 m to 0 m behind the screen");
+        assert_eq!(reach(0.5..1.0), "from 0.5 m to 1 m before the screen");
+        assert_eq!(reach(0.0..1.0), "from 0 m to 1 m before the screen");
     }
 }

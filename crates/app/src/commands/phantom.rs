@@ -11,10 +11,11 @@ use wheatstone_io::write_nrrd;
 
 /// Write an analytic test volume as NRRD.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
+#[command(after_help = format!("Examples:\n  \
     wheatstone phantom shepp-logan --size 128 -o head.nrrd\n  \
-    wheatstone phantom ramp --size 64x32x16 -o ramp.nrrd\n\n\
-    Phantoms: box, sphere, ramp, marschner-lobb, shepp-logan, present, beetle, snake, orientation.")]
+    wheatstone phantom ramp --size 64x32x16 -o ramp.nrrd\n  \
+    wheatstone phantom wedding-cake --size 200x150x110 -o cake.nrrd\n\n\
+    Phantoms: {}.", Phantom::names()))]
 pub(crate) struct PhantomArgs {
     /// Name of the phantom.
     #[arg(value_name = "NAME")]

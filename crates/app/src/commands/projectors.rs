@@ -356,9 +356,10 @@ impl Stage {
         let reach_m = &self.stand.reach_m;
         if reach_m.end > viewer_m || reach_m.start < emitter_m {
             eprintln!(
-                "warning: the volume reaches from {:.3} m behind to {:.3} m before the screen: what is beyond the emitters, \
-                 {:.3} m behind it, or the viewer, {viewer_m:.3} m before it, is cut off",
-                -reach_m.start, reach_m.end, -emitter_m,
+                "warning: the volume reaches {}: what is beyond the emitters, {:.3} m behind it, or the viewer, {viewer_m:.3} m before it, \
+                 is cut off",
+                self.stand.reach(|metres| format!("{metres:.3} m")),
+                -emitter_m,
             );
         }
     }

@@ -188,14 +188,13 @@ impl QuiltArgs {
         if before_m <= limits.before_m && behind_m <= limits.behind_m {
             return;
         }
-        let reach = |metres: f64, side: &str| format!("{:.1} mm {side}", metres * 1e3);
+        let written = |metres: f64| format!("{:.1} mm", metres * 1e3);
         eprintln!(
-            "warning: the volume reaches from {} to {} the screen; beyond {} and {} things move by more than {} pixels \
+            "warning: the volume reaches {}; beyond {} behind and {} before things move by more than {} pixels \
              from view to view, which is seen as ghosts: --volume-size makes it smaller",
-            reach(behind_m, "behind"),
-            reach(before_m, "before"),
-            reach(limits.behind_m, "behind"),
-            reach(limits.before_m, "before"),
+            stage.stand.reach(written),
+            written(limits.behind_m),
+            written(limits.before_m),
             self.most_disparity,
         );
     }

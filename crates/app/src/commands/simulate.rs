@@ -45,7 +45,7 @@ pub(crate) struct SimulateArgs {
     frames: Option<u32>,
 
     /// Width and height of what is seen, pixels [default: those of a view or of a projector's image].
-    #[arg(long, value_name = "WxH", value_parser = spec::picture_size)]
+    #[arg(long, value_name = "WxH", value_parser = spec::display_picture_size)]
     size: Option<[u32; 2]>,
 
     /// The picture is interlaced by this calibration (visual.json).

@@ -195,8 +195,40 @@ fn what_is_too_deep_is_told() {
     assert!(deep.stderr.contains("warning: the volume reaches from 75.0 mm behind"), "{}", deep.stderr);
     let flat = quilt(&bench, "q.png", &["--volume-size", "0.005"]);
     assert!(!flat.stderr.contains("warning"), "{}", flat.stderr);
+    let behind = quilt(&bench, "q.png", &["--volume-size", "0.15", "--before-screen=-900"]);
+    let says = "warning: the volume reaches from 900075.0 mm to 899925.0 mm behind the screen; beyond";
+    assert!(behind.stderr.contains(says), "{}", behind.stderr);
     let lenient = quilt(&bench, "q.png", &["--volume-size", "0.15", "--most-disparity", "100"]);
     assert!(!lenient.stderr.contains("warning"), "{}", lenient.stderr);
+}
+
+#[test]
+fn quilts_may_be_as_large_as_descriptions_allow() {
+    let bench = Bench::new();
+    let base = ["quilt", "sphere.nrrd", "-o", "q_qs1x1a1.png", "--display", "none.json", "--quilt-size"];
+    for (size, says) in [
+        ("32768x4096", "none.json"),
+        ("32769x1", "each from 1 to 32768, with at most 134217728 pixels"),
+        ("32768x4097", "each from 1 to 32768, with at most 134217728 pixels"),
+    ] {
+        let run = bench.run(&[&base[..], &[size]].concat());
+        assert!(run.code == 2 && run.stderr.contains(says), "{size}: {}", run.stderr);
+    }
+    quilt(&bench, "q.png", &["--volume-size", "0.05"]);
+    simulate(&bench, "q_qs3x2a1.png", &["--size", "20000x1"]);
+    assert_eq!(open(&bench, "seen.png").dimensions(), (20_000, 1));
+}
+
+#[test]
+fn a_calibration_of_hardly_any_lenses_is_refused() {
+    let bench = Bench::new();
+    quilt(&bench, "q.png", &["--volume-size", "0.05"]);
+    std::fs::write(bench.path("visual.json"), CALIBRATION.replace("{\"value\":20}", "0.0001")).unwrap();
+    let refused = try_simulate(&bench, "q_qs3x2a1.png", &["--interlaced", "visual.json"]);
+    assert_eq!(refused.code, 2);
+    let says = "visual.json: pitch is 0.0001, with slope -7 and DPI 100:";
+    assert!(refused.stderr.contains(says), "{}", refused.stderr);
+    assert!(refused.stderr.contains("must be from 10 to 576"), "{}", refused.stderr);
 }
 
 #[test]

@@ -645,6 +645,22 @@ fn every_command_has_help_with_an_example() {
 }
 
 #[test]
+fn every_phantom_is_in_the_help_and_in_the_reference() {
+    use wheatstone_core::phantom::Phantom;
+    let help = Bench::new().run(&["phantom", "--help"]).stdout;
+    // Lines are broken where they are too long.
+    let (_, listed) = help.split_once("Phantoms: ").unwrap();
+    let listed = listed.split_whitespace().collect::<Vec<_>>().join(" ");
+    let names: Vec<&str> = Phantom::ALL.iter().map(|phantom| phantom.name()).collect();
+    assert_eq!(listed.trim_end_matches('.').split(", ").collect::<Vec<_>>(), names);
+    let reference = std::fs::read_to_string(repository_file("docs/cli.md")).unwrap();
+    let section = &reference[reference.find("\n## phantom").unwrap()..reference.find("\n## doctor").unwrap()];
+    for name in names {
+        assert!(section.contains(&format!("`{name}`")), "{name} is not in docs/cli.md");
+    }
+}
+
+#[test]
 fn every_flag_is_in_the_reference() {
     let bench = Bench::new();
     let reference = std::fs::read_to_string(repository_file("docs/cli.md")).unwrap();

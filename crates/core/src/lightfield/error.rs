@@ -27,7 +27,7 @@ pub enum DisplayError {
         expected: u64,
     },
     /// A number out of its bounds.
-    #[error("{field} is {value}: must be {expected}")]
+    #[error("{field} is {}: must be {expected}", written(*value))]
     Number {
         /// Which field, with its place in lists.
         field: String,
@@ -35,6 +35,23 @@ pub enum DisplayError {
         value: f64,
         /// What it must be.
         expected: &'static str,
+    },
+    /// Lenses that are too few on a panel to show directions by, or narrower than what they are to show.
+    #[error(
+        "pitch is {}, with slope {} and DPI {}: {} lenses lie across the panel, must be from 10 to {most}, one for each sub-pixel",
+        written(*pitch_per_inch), written(*slope), written(*dots_per_inch), written(*lenses)
+    )]
+    LensCount {
+        /// Lenses per inch.
+        pitch_per_inch: f64,
+        /// Height over width of their slant.
+        slope: f64,
+        /// Pixels per inch.
+        dots_per_inch: f64,
+        /// Lenses across the panel.
+        lenses: f64,
+        /// Sub-pixels across the panel.
+        most: u32,
     },
     /// A field that is needed and not there.
     #[error("{field} is missing: must be a number")]
@@ -127,6 +144,12 @@ impl From<serde_json::Error> for DisplayError {
     }
 }
 
+/// A number as errors tell it: one that is huge or tiny in scientific form, instead of by hundreds of digits.
+pub(super) fn written(value: f64) -> String {
+    let is_short = value == 0.0 || !value.is_finite() || (1e-6..1e12).contains(&value.abs());
+    if is_short { value.to_string() } else { format!("{value:e}") }
+}
+
 /// What the object of a text in JSON tells. Lists of the values alone are refused.
 pub(super) fn from_object<T: DeserializeOwned>(text: &str) -> Result<T, DisplayError> {
     serde_json::from_str::<Map<String, Value>>(text)?;
@@ -164,11 +187,11 @@ pub(super) fn check_place_m(field: impl Into<String>, value: f64) -> Result<(), 
 /// Longest distance of anything from a display, metres.
 pub(super) const LONGEST_M: f64 = 1000.0;
 
-/// Most pixels along a side of any picture.
-pub(super) const LONGEST_SIDE_PX: u32 = 32_768;
+/// Most pixels along a side of any picture of a display.
+pub const LONGEST_SIDE_PX: u32 = 32_768;
 
 /// Most pixels of a picture, or of all that a display needs at once: as floats they take 1.6 GB.
-pub(super) const MOST_PIXELS: u64 = 1 << 27;
+pub const MOST_PIXELS: u64 = 1 << 27;
 
 /// The sides of a picture, and how many pixels it has.
 pub(super) fn check_size_px(field: &'static str, size: [u32; 2]) -> Result<(), DisplayError> {

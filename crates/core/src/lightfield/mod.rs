@@ -16,7 +16,7 @@ pub mod quilt;
 mod resolution;
 pub mod simulator;
 
-pub use error::DisplayError;
+pub use error::{DisplayError, LONGEST_SIDE_PX, MOST_PIXELS};
 pub use lenticular::Lenticular;
 pub use projectors::ProjectorArray;
 pub use quilt::QuiltDisplay;

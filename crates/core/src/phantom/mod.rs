@@ -1,7 +1,8 @@
 //! Analytic volumes: functions of texture coordinates, sampled at voxel centres at any size.
 //!
 //! Each phantom fills the texture cube from 0 to 1; where the dimensions differ it is stretched with them. Voxels are 1 mm
-//! cubes and the volume is centred on the patient's origin, index axes along R, A, S.
+//! cubes, but for the wedding cakes, which are of one size whatever their voxels, and the volume is centred on the patient's
+//! origin, index axes along R, A, S.
 
 mod beetle;
 mod marschner_lobb;
@@ -21,6 +22,8 @@ pub use solid_box::{BOX_HI, BOX_LO};
 pub use sphere::{SPHERE_EDGE_VOXELS, SPHERE_RADIUS};
 pub use wedding_cake::{CAKE_VALUES, WeddingCake};
 pub use wire_box::WIRE_HALF_WIDTH_VOXELS;
+
+use wedding_cake::{DEEP_M, FLAT_M};
 
 use crate::volume::{Grid, GridError, Volume, VolumeError, Voxels};
 use glam::DVec3;
@@ -60,6 +63,10 @@ pub enum Phantom {
     /// Each letter reads upright and unmirrored from outside, with S up on the R, L, A and P faces and A up on the S
     /// and I faces.
     Orientation,
+    /// Random dots on three layers, 10 cm before, on and behind the screen of the display of LF: [`WeddingCake::of_paper`].
+    WeddingCake,
+    /// The same dots with the layers 1 cm apart.
+    FlatWeddingCake,
 }
 
 /// A name that is no phantom's.
@@ -98,6 +105,8 @@ impl Phantom {
         Self::Beetle,
         Self::Snake,
         Self::Orientation,
+        Self::WeddingCake,
+        Self::FlatWeddingCake,
     ];
 
     /// Name as written on the command line.
@@ -113,6 +122,8 @@ impl Phantom {
             Self::Beetle => "beetle",
             Self::Snake => "snake",
             Self::Orientation => "orientation",
+            Self::WeddingCake => "wedding-cake",
+            Self::FlatWeddingCake => "flat-wedding-cake",
         }
     }
 
@@ -135,6 +146,8 @@ impl Phantom {
             Self::Beetle => eight_bit(dims, beetle::value)?,
             Self::Snake => eight_bit(dims, snake::value)?,
             Self::Orientation => eight_bit(dims, orientation::value)?,
+            Self::WeddingCake => return WeddingCake::of_paper(DEEP_M).volume(dims),
+            Self::FlatWeddingCake => return WeddingCake::of_paper(FLAT_M).volume(dims),
         };
         Ok(Volume::new(grid, voxels)?)
     }
@@ -147,7 +160,8 @@ impl Phantom {
         self.volume([size; 3])
     }
 
-    fn names() -> String {
+    /// The names of all, in a sentence.
+    pub fn names() -> String {
         Self::ALL.iter().map(|phantom| phantom.name()).collect::<Vec<_>>().join(", ")
     }
 }

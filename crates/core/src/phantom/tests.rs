@@ -96,6 +96,32 @@ fn the_ramp_is_the_texture_coordinate() {
 }
 
 #[test]
+fn cakes_are_as_deep_as_the_papers_and_their_dots_are_alike() {
+    // Metres from the middle, and whether a dot is there, of what is no air in a column, z upwards.
+    let layers = |phantom: Phantom, [x, y]: [usize; 2]| {
+        let volume = phantom.volume([100, 75, 220]).unwrap();
+        let value = |z: usize| volume.voxels().value((z * 75 + y) * 100 + x);
+        let found = (0..220).filter(|&z| value(z) != 128.0);
+        found.map(|z| ((z as f64 + 0.5 - 110.0) * 1e-3, value(z) == 255.0)).collect::<Vec<_>>()
+    };
+    for ([x, y], deep_m, flat_m) in [([51, 38], 0.1, 0.01), ([70, 38], 0.0, 0.0), ([99, 74], -0.1, -0.01)] {
+        for (phantom, expected_m) in [(Phantom::WeddingCake, deep_m), (Phantom::FlatWeddingCake, flat_m)] {
+            let found = layers(phantom, [x, y]);
+            assert!(!found.is_empty(), "{phantom} {x} {y}");
+            assert!(
+                found.iter().all(|(z_m, _)| (z_m - expected_m).abs() < 1.6e-3),
+                "{phantom} {x} {y}: {found:?}"
+            );
+        }
+    }
+    let dot = |phantom: Phantom, at: [usize; 2]| layers(phantom, at)[0].1;
+    let middle: Vec<[usize; 2]> = (64..76).step_by(2).map(|x| [x, 38]).collect();
+    assert!(middle.iter().all(|&at| dot(Phantom::WeddingCake, at) == dot(Phantom::FlatWeddingCake, at)));
+    assert!(middle.iter().any(|&at| dot(Phantom::WeddingCake, at)));
+    assert!(middle.iter().any(|&at| !dot(Phantom::WeddingCake, at)));
+}
+
+#[test]
 fn marschner_lobb_has_its_published_values() {
     assert!((marschner_lobb::value(DVec3::splat(0.5)) - 0.6).abs() < 1e-12, "ρ(0,0,0)");
     assert!((marschner_lobb::value(DVec3::new(0.5, 0.5, 0.0)) - 1.0).abs() < 1e-12, "ρ(0,0,−1)");

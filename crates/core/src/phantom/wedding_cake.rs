@@ -31,7 +31,18 @@ const RADII: [f64; 2] = [0.35, 0.7];
 /// Voxels along z that a layer is thick.
 const THICKNESS_VOXELS: f64 = 2.0;
 
+/// How far before the screen the innermost layer of LF's deep cake and of its flat one is, metres.
+pub(super) const DEEP_M: f64 = 0.1;
+pub(super) const FLAT_M: f64 = 0.01;
+
 impl WeddingCake {
+    /// A cake for the display of LF (`ProjectorArray::of_paper`) and an eye where its virtual viewer is, 1 m away. It is so much larger than
+    /// the screen that its edges are not seen, which would tell how far behind the screen they are. Dots are 1 cm large: 4 pixels of the
+    /// display as far as 10 cm from its screen.
+    pub fn of_paper(half_depth_m: f64) -> Self {
+        Self { seed: 1, size_m: [0.5, 0.375, 0.22], half_depth_m, eye_distance_m: 1.0, dot_m: 0.01 }
+    }
+
     /// The volume at a number of voxels along each axis.
     ///
     /// # Errors

@@ -112,7 +112,13 @@ fn what_tells_too_little_gives_one_clear_error() {
     assert_eq!(fault(&[on_screen, &all[..1]].concat()), undetermined);
     let mut broken = all.clone();
     broken[7].place_m.x = f64::NAN;
-    assert_eq!(fault(&broken), "correspondence 7 has a number that is not finite");
+    assert_eq!(fault(&broken), "correspondences[7].place_m[0] is NaN: must be from -1000 to 1000 m");
+    let mut far = all.clone();
+    far[2].place_m.z = -1e308;
+    assert_eq!(fault(&far), "correspondences[2].place_m[2] is -1e308: must be from -1000 to 1000 m");
+    let mut outside = all.clone();
+    outside[3].pixel.y = 1e9;
+    assert_eq!(fault(&outside), "correspondences[3].pixel[1] is 1000000000: must be from -32768 to 32768");
     // Depths that are nearer each other than the places are exact.
     let uncertain = fault(&measured_at([-3e-5, 0.0, 4.5e-5], &guess, 1e-4));
     assert!(uncertain.contains("m with a standard deviation of"), "{uncertain}");
@@ -286,6 +292,8 @@ fn measurements_and_corrections_that_are_none_give_one_clear_error() {
     assert!(fault(&with(&|m| m.projectors[1].id = 1)).contains("ids must differ"));
     let few = fault(&with(&|m| m.projectors[0].correspondences.truncate(2)));
     assert_eq!(few, "projector 1: 2 correspondences: at least 4 are needed");
+    let far = fault(&with(&|m| m.projectors[1].correspondences[4].place_m = [1e308, -1e308, 1e308]));
+    assert_eq!(far, "projector 2: correspondences[4].place_m[0] is 1e308: must be from -1000 to 1000 m");
     let of_text = |text: &str| Measurements::from_json(text).unwrap_err().to_string();
     assert!(of_text(r#"{"wheatstone_measurements": 2, "projectors": []}"#).contains("version 2"));
     assert!(of_text(r#"{"projectors": []}"#).contains("wheatstone_measurements"));

@@ -57,9 +57,15 @@ fn each_fault_is_named_with_what_was_expected() {
         (number("\"distance_m\": 0.6", "\"distance_m\": 1e999"), "number out of range"),
         (
             number("-0.5\n", "0.0\n"),
-            "projectors[0].emitter_m[2] is 0: must be below 0: emitters are behind the screen",
+            "projectors[0].emitter_m[2] is 0: must be at most -0.000001 m: emitters are behind the screen",
         ),
-        (number("-0.5\n", "0.5\n"), "projectors[0].emitter_m[2] is 0.5: must be below 0"),
+        (number("-0.5\n", "0.5\n"), "projectors[0].emitter_m[2] is 0.5: must be at most -0.000001 m"),
+        (number("-0.5\n", "-1e-300\n"), "projectors[0].emitter_m[2] is -1e-300: must be at most -0.000001 m"),
+        (
+            number("-0.5\n", "-1.5e300\n"),
+            "projectors[0].emitter_m[2] is -1.5e300: must be from -1000 to 1000 m",
+        ),
+        (number("\"id\": 5", "\"id\": 1e300"), "invalid type: floating point `1e+300`, expected u32"),
         (
             number("\"beam_angle_deg\": 2.0", "\"beam_angle_deg\": 0"),
             "beam_angle_deg is 0: must be above 0 and below 90",
@@ -67,11 +73,15 @@ fn each_fault_is_named_with_what_was_expected() {
         (number("\"pixel_size_m\": 0.0125", "\"pixel_size_m\": 0"), "pixel_size_m is 0: must be above 0"),
         (
             number("\"up_m\": 0.075", "\"up_m\": -0.075"),
-            "projectors[0].image.up_m is -0.075: must be above down_m",
+            "projectors[0].image.up_m is -0.075: must be at least 0.000001 m above down_m",
         ),
         (
             number("\"right_m\": -0.1", "\"right_m\": 0.1"),
-            "projectors[0].image.right_m is 0.1: must be another than left_m",
+            "projectors[0].image.right_m is 0.1: must be at least 0.000001 m from left_m",
+        ),
+        (
+            number("\"right_m\": -0.1", "\"right_m\": 0.1000001"),
+            "projectors[0].image.right_m is 0.1000001: must be at least 0.000001 m from left_m",
         ),
         (number("\"id\": 5", "\"id\": 2"), "projectors[5].id is 2, as of projectors[2]: ids must differ"),
         (number("\"id\": 5", "\"id\": 16777215"), "projectors[5].id is 16777215: must be at most 16777214"),

@@ -13,7 +13,7 @@ const STRIPES: &str = r#"{"configVersion":"1.0","serial":"00112","pitch":{"value
     "screenH":{"value":60.0},"flipImageX":{"value":0.0},"flipImageY":{"value":0.0},"flipSubp":{"value":0.0}}"#;
 
 /// With sub-pixels that are not stripes, as of the third generation.
-const CELLS: &str = r#"{"pitch":44.72,"slope":-7.45,"center":0.1,"viewCone":50,"DPI":283,"screenW":54,"screenH":96,
+const CELLS: &str = r#"{"pitch":44.72,"slope":-7.45,"center":0.1,"viewCone":50,"DPI":283,"screenW":81,"screenH":96,
     "CellPatternMode":{"value":4},"subpixelCells":[
     {"ROffsetX":-0.25,"ROffsetY":-0.31,"GOffsetX":-0.25,"GOffsetY":0.28,"BOffsetX":0.25,"BOffsetY":0},
     {"ROffsetX":0.25,"ROffsetY":-0.31,"GOffsetX":0.25,"GOffsetY":0.28,"BOffsetX":-0.25,"BOffsetY":0}]}"#;
@@ -181,6 +181,14 @@ fn each_fault_of_a_calibration_is_named() {
         (fault("\"DPI\":{\"value\":338.0}", "\"DPI\":{\"value\":0}"), "DPI is 0: must be from 1 to 100000"),
         (fault("96.0", "96.5"), "screenW is 96.5: must be a whole number of pixels"),
         (fault("96.0", "1e9"), "screenW, screenH[0] is 1000000000: must be from 1 to 32768 pixels"),
+        (
+            fault("49.825218200683597", "0.0001"),
+            "pitch is 0.0001, with slope 5.2160325050354 and DPI 338: 0.0000278",
+        ),
+        (fault("49.825218200683597", "0.0001"), "must be from 10 to 288, one for each sub-pixel"),
+        (fault("49.825218200683597", "1e-200"), "pitch is 1e-200, with slope"),
+        (fault("49.825218200683597", "9000"), "must be from 10 to 288"),
+        (fault("5.2160325050354", "0.001"), "with slope 0.001 and DPI 338: 0.0141"),
         (
             fault("\"CellPatternMode\":{\"value\":4}", "\"CellPatternMode\":{\"value\":5}"),
             "CellPatternMode is 5: must be 0, 1, 2, 3 or 4",

@@ -1,8 +1,9 @@
 //! The pinhole emitter that measured beams agree with best.
 
+use crate::lightfield::error::{DisplayError, LONGEST_SIDE_PX, check, check_place_m, written};
 use crate::lightfield::projectors::{ImageRect, Projector};
 use glam::{DVec2, DVec3};
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::storage::Owned;
 use nalgebra::{Dyn, OMatrix, OVector, SMatrix, SymmetricEigen, U7};
 use thiserror::Error;
@@ -43,9 +44,9 @@ pub enum FitError {
         /// Measurements given.
         found: usize,
     },
-    /// A number that is not finite.
-    #[error("correspondence {0} has a number that is not finite")]
-    NotFinite(usize),
+    /// A number of a correspondence that is out of its bounds.
+    #[error(transparent)]
+    Number(#[from] DisplayError),
     /// Measurements with which several emitters or images agree equally well.
     #[error(
         "the correspondences do not determine the projector: pixels of different columns and of different rows at each of two depths do"
@@ -53,8 +54,8 @@ pub enum FitError {
     Undetermined,
     /// Measurements that tell no more than that the emitter is somewhere behind the screen.
     #[error(
-        "the emitter is at z = {z_m:.3} m with a standard deviation of {deviation_m:.3} m: more exact places are needed, or depths further \
-        apart"
+        "the emitter is at z = {} m with a standard deviation of {} m: more exact places are needed, or depths further apart",
+        to_millimetres(*z_m), to_millimetres(*deviation_m)
     )]
     Uncertain {
         /// Best z, metres.
@@ -139,7 +140,7 @@ impl Problem<'_> {
         if report.termination.was_successful() {
             Ok(found)
         } else {
-            Err(FitError::NotFound(format!("{:?}", report.termination)))
+            Err(FitError::NotFound(in_words(&report.termination).to_owned()))
         }
     }
 
@@ -207,14 +208,14 @@ impl Fit {
     /// which what is far off all others hardly counts (iterated with the weights of Huber 1964).
     ///
     /// # Errors
-    /// Too few correspondences, numbers that are not finite, places that do not determine the projector (pixels of different columns and
+    /// Too few correspondences, pixels and places out of their bounds, places that do not determine the projector (pixels of different columns and
     /// of different rows at each of two depths do) or are too inexact to, a search that does not end behind the screen.
     pub fn of(
         guess: &Projector,
         image_size_px: [u32; 2],
         measured: &[Correspondence],
     ) -> Result<Self, FitError> {
-        check(measured)?;
+        check_all(measured)?;
         let ImageRect { left_m, right_m, down_m, up_m } = guess.image;
         let [x_m, y_m, z_m] = guess.emitter_m;
         let mut fitted = Problem {
@@ -235,7 +236,7 @@ impl Fit {
         let deviations_m = fitted.deviations_m()?;
         let [x_m, y_m, z_m, left_m, right_m, down_m, up_m] = fitted.unknowns.into();
         if z_m >= 0.0 || !fitted.unknowns.iter().all(|number: &f64| number.is_finite()) {
-            return Err(FitError::NotFound(format!("the best is at z = {z_m} m")));
+            return Err(FitError::NotFound(format!("the best is at z = {} m", written(z_m))));
         }
         let deviation_m = deviations_m[2];
         if deviation_m > LARGEST_DEVIATION * -z_m {
@@ -256,12 +257,37 @@ impl Fit {
     }
 }
 
-fn check(measured: &[Correspondence]) -> Result<(), FitError> {
+/// Furthest that a pixel may be from the image's top left corner.
+const FURTHEST_PX: f64 = LONGEST_SIDE_PX as f64;
+
+fn check_all(measured: &[Correspondence]) -> Result<(), FitError> {
     if measured.len() < LEAST {
         return Err(FitError::TooFew { found: measured.len() });
     }
-    match measured.iter().position(|c| !(c.pixel.is_finite() && c.place_m.is_finite())) {
-        Some(index) => Err(FitError::NotFinite(index)),
-        None => Ok(()),
+    for (index, correspondence) in measured.iter().enumerate() {
+        let field = |name: &str, axis: usize| format!("correspondences[{index}].{name}[{axis}]");
+        for (axis, place) in correspondence.pixel.to_array().into_iter().enumerate() {
+            check(place.abs() <= FURTHEST_PX, field("pixel", axis), place, "from -32768 to 32768")?;
+        }
+        for (axis, place_m) in correspondence.place_m.to_array().into_iter().enumerate() {
+            check_place_m(field("place_m", axis), place_m)?;
+        }
     }
+    Ok(())
+}
+
+/// Why a search found no minimum.
+fn in_words(ended: &TerminationReason) -> &'static str {
+    match ended {
+        TerminationReason::LostPatience => "the search did not end",
+        TerminationReason::User(_) | TerminationReason::Numerical(_) => {
+            "the search came to numbers that are not finite"
+        }
+        _ => "the search came to no minimum",
+    }
+}
+
+/// Metres, rounded to a millimetre.
+fn to_millimetres(metres: f64) -> String {
+    written((metres * 1e3).round() / 1e3)
 }

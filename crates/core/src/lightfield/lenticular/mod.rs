@@ -62,6 +62,9 @@ pub enum CellPattern {
     Rows,
 }
 
+/// Least number of lenses across a panel: displays have a hundred and more.
+const FEWEST_LENSES: f64 = 10.0;
+
 /// Most places of sub-pixels in a calibration.
 const MOST_CELLS: usize = 10;
 
@@ -92,7 +95,8 @@ impl Lenticular {
     /// The same if it can be one.
     ///
     /// # Errors
-    /// Numbers that are not finite or out of their bounds, fewer cells than their pattern has.
+    /// Numbers that are not finite or out of their bounds, lenses that are fewer across the panel than 10 or more than its sub-pixels, fewer
+    /// cells than their pattern has.
     pub fn checked(self) -> Result<Self, DisplayError> {
         let Self { pitch_per_inch, slope, center, view_cone_deg, dots_per_inch, .. } = self;
         let is_pitch = pitch_per_inch > 0.0 && pitch_per_inch <= 1e4;
@@ -109,6 +113,7 @@ impl Lenticular {
         let is_density = (1.0..=1e5).contains(&dots_per_inch);
         check(is_density, "DPI", dots_per_inch, "from 1 to 100000")?;
         check_size_px("screenW, screenH", self.panel_px)?;
+        self.check_lens_count()?;
         if self.cells.len() > MOST_CELLS
             || (!self.cells.is_empty() && self.cells.len() < self.cell_pattern.cell_count())
         {
@@ -127,6 +132,15 @@ impl Lenticular {
             }
         }
         Ok(self)
+    }
+
+    fn check_lens_count(&self) -> Result<(), DisplayError> {
+        let Self { pitch_per_inch, slope, dots_per_inch, .. } = *self;
+        let (lenses, most) = (self.lenses_across(), 3 * self.panel_px[0]);
+        if (FEWEST_LENSES..=f64::from(most)).contains(&lenses) {
+            return Ok(());
+        }
+        Err(DisplayError::LensCount { pitch_per_inch, slope, dots_per_inch, lenses, most })
     }
 
     /// Lenses that a row of the panel crosses (`ProcessPitch` of the maker's toolkit).

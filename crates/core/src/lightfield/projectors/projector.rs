@@ -66,15 +66,25 @@ impl Projector {
         check_place_m(field("emitter_m[0]"), x_m)?;
         check_place_m(field("emitter_m[1]"), y_m)?;
         check_place_m(field("emitter_m[2]"), z_m)?;
-        check(z_m <= -LEAST_M, field("emitter_m[2]"), z_m, "below 0: emitters are behind the screen")?;
+        check(
+            z_m <= -LEAST_M,
+            field("emitter_m[2]"),
+            z_m,
+            "at most -0.000001 m: emitters are behind the screen",
+        )?;
         let ImageRect { left_m, right_m, down_m, up_m } = self.image;
         check_place_m(field("image.left_m"), left_m)?;
         check_place_m(field("image.right_m"), right_m)?;
         check_place_m(field("image.down_m"), down_m)?;
         check_place_m(field("image.up_m"), up_m)?;
         let is_wide = (right_m - left_m).abs() >= LEAST_M;
-        check(is_wide, field("image.right_m"), right_m, "another than left_m: images have a width")?;
-        check(up_m - down_m >= LEAST_M, field("image.up_m"), up_m, "above down_m")
+        check(
+            is_wide,
+            field("image.right_m"),
+            right_m,
+            "at least 0.000001 m from left_m: images have a width",
+        )?;
+        check(up_m - down_m >= LEAST_M, field("image.up_m"), up_m, "at least 0.000001 m above down_m")
     }
 
     /// The projection of its picture.
