@@ -446,10 +446,8 @@ fn warps_of_the_brain_are_in_the_order_of_what_they_know() {
     let means = of("dssim_mean");
     assert!(means.windows(2).all(|pair| pair[1] < 0.97 * pair[0]), "{means:?}");
     assert!(of("dssim_worst")[3] <= 0.052, "{:?}", of("dssim_worst"));
-    // The thirty per cent by which cells scatter, and cells of unlike cost, make one refresh in a hundred late at most.
-    assert!(
-        of("missed").iter().all(|&missed| missed <= 0.01 * rows[0]["trace"].as_array().unwrap().len() as f64)
-    );
+    // In spite of cells of unlike cost that scatter by thirty per cent: one refresh in a hundred.
+    assert!(of("missed").iter().all(|&missed| missed <= 1.0), "{:?}", of("missed"));
 }
 
 #[test]
