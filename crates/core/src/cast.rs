@@ -5,7 +5,7 @@ use crate::scene::{
     BoundaryEnhancement, GradientMethod, Light, MAX_DIRECTIONS, Mode, Placement, Settings, Shading,
 };
 use crate::transfer::Lut;
-use crate::volume::Window;
+use crate::volume::{DIAGONALS, Window};
 use glam::{BVec3, DAffine3, DVec3, Mat3, Vec3, Vec3A, Vec4};
 
 /// Ambient, diffuse and specular weights and the specular exponent of Phong shading.
@@ -180,10 +180,8 @@ impl CastParameters {
 
     /// Most samples that any ray takes: those of the volume's diagonal.
     pub fn most_samples_per_ray(&self) -> u32 {
-        let corners =
-            [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
         let diagonal =
-            corners.map(|c| (self.metric_from_texture * c).length()).into_iter().fold(0.0, f32::max);
+            DIAGONALS.map(|way| (self.metric_from_texture * way).length()).into_iter().fold(0.0, f32::max);
         ((diagonal * self.sampling_factor).ceil() as u32).saturating_add(1)
     }
 

@@ -1,8 +1,6 @@
 //! Reading that is given up from elsewhere.
 
 use std::{
-    error::Error,
-    fmt,
     io::{self, Read},
     sync::{
         Arc,
@@ -44,16 +42,9 @@ impl<R: Read> Read for Watched<R> {
     }
 }
 
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("given up")]
 struct Cancelled;
-
-impl fmt::Display for Cancelled {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("given up")
-    }
-}
-
-impl Error for Cancelled {}
 
 /// Whether an error is that of a [`Watched`] reader.
 pub(crate) fn is_cancelled(error: &io::Error) -> bool {

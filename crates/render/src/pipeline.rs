@@ -22,8 +22,7 @@ pub(crate) fn build(
     layout: Option<&wgpu::PipelineLayout>,
     files: &KernelFiles<'_>,
 ) -> Result<wgpu::ComputePipeline, GpuError> {
-    let source = compose(files.root, files.choices)
-        .map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+    let source = compose(files.root, files.choices).map_err(GpuError::refused)?;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(files.root),
         source: wgpu::ShaderSource::Wgsl(source.text.into()),

@@ -1,6 +1,36 @@
 //! Textures back to the host.
 
 use crate::gpu::{Gpu, GpuError};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+/// A part of a buffer that is being mapped, to be read without waiting.
+#[derive(Debug)]
+pub(crate) struct Arrival(Receiver<Result<(), wgpu::BufferAsyncError>>);
+
+impl Arrival {
+    /// Begins to map, after the submission that fills the buffer.
+    pub(crate) fn of(slice: &wgpu::BufferSlice<'_>) -> Self {
+        let (sender, arrived) = channel();
+        // Nobody listens any more where what is read has been given up.
+        slice.map_async(wgpu::MapMode::Read, move |result| drop(sender.send(result)));
+        Self(arrived)
+    }
+
+    /// Whether it has come to its end, once the device has been polled when it was ready: if the buffer is not mapped then, mapped ranges
+    /// of it say so.
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] if the buffer cannot be mapped.
+    pub(crate) fn is_here(&self) -> Result<bool, GpuError> {
+        match self.0.try_recv() {
+            Err(TryRecvError::Empty) => Ok(false),
+            Ok(Err(error)) => Err(GpuError::refused(error)),
+            // wgpu drops the callbacks of buffers that it has mapped if a window cannot be configured because another thread gives the
+            // device work.
+            Ok(Ok(())) | Err(TryRecvError::Disconnected) => Ok(true),
+        }
+    }
+}
 
 /// All texels of a texture, row by row and slice by slice.
 ///
@@ -50,9 +80,24 @@ pub(crate) fn read_buffer<T>(
 ) -> Result<T, GpuError> {
     buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
     gpu.wait()?;
-    let mapped = buffer
-        .slice(..)
-        .get_mapped_range()
-        .map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+    let mapped = buffer.slice(..).get_mapped_range().map_err(GpuError::refused)?;
     Ok(read(&mapped))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_buffer_whose_callback_was_dropped_is_looked_at_and_one_that_is_refused_is_told() {
+        let (sender, arrived) = channel();
+        let arrival = Arrival(arrived);
+        assert_eq!(arrival.is_here(), Ok(false));
+        sender.send(Ok(())).unwrap();
+        assert_eq!(arrival.is_here(), Ok(true));
+        sender.send(Err(wgpu::BufferAsyncError)).unwrap();
+        assert!(matches!(arrival.is_here(), Err(GpuError::Refused { .. })));
+        drop(sender);
+        assert_eq!(arrival.is_here(), Ok(true));
+    }
 }

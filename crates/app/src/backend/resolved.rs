@@ -25,6 +25,12 @@ pub(crate) struct ResolvedShot {
     pub(crate) coarseness: Coarseness,
 }
 
+impl ResolvedShot {
+    pub(crate) fn in_full(shot: Shot) -> Self {
+        Self { shot, coarseness: Coarseness::NONE }
+    }
+}
+
 /// What the virtual viewer sees of a volume on a display.
 struct Sight {
     /// Of each projector, the columns that it sees; none of those that it does not.
@@ -46,10 +52,10 @@ impl Engine<'_> {
         array: &ProjectorArray,
         displays_from_world: &[DAffine3],
     ) -> Result<ResolvedShot, Failure> {
-        let full = ResolvedShot { shot: self.prepare(parameters, skipping)?, coarseness: Coarseness::NONE };
+        let full = ResolvedShot::in_full(self.prepare(parameters, skipping)?);
         let turns = displays_from_world.len();
-        let tried = (0..turns.min(TRIED_TURNS))
-            .map(|turn| displays_from_world[turn * turns / turns.min(TRIED_TURNS)]);
+        let tried_turns = turns.min(TRIED_TURNS);
+        let tried = (0..tried_turns).map(|turn| displays_from_world[turn * turns / tried_turns]);
         let mut sights = Vec::new();
         for display_from_world in tried {
             sights.extend(self.sight(full.shot, parameters, array, display_from_world)?);
@@ -116,16 +122,15 @@ impl Engine<'_> {
         for view in &sight.views {
             images.push(match view {
                 Some(view) => {
-                    self.cast(shot, &[*view])?;
-                    let cast = self.read()?.swap_remove(0);
-                    samples += cast.samples;
-                    cast.image.over_background([0.0; 3])
+                    let (image, of_image) = self.pictured(shot, view)?;
+                    samples += of_image;
+                    image
                 }
                 None => RgbImage { width: 0, height: 0, rgb: Vec::new() },
             });
         }
         let PixelRect { columns, rows } = &sight.rect;
-        let size = [columns.len() as u32, rows.len() as u32];
-        Ok((sight.parts.picture(&images).cut([columns.start, rows.start], size), samples))
+        let picture = sight.parts.picture(&images).cut([columns.start, rows.start], sight.rect.size());
+        Ok((picture, samples))
     }
 }

@@ -9,10 +9,15 @@ use wheatstone_core::view::View;
 const RAYS: u32 = 2;
 
 impl Engine<'_> {
-    /// The picture of a view before black.
-    pub(crate) fn over_black(&mut self, shot: Shot, view: &View) -> Result<RgbImage, Failure> {
+    /// The picture of a view before black, and how many samples it took.
+    pub(crate) fn pictured(&mut self, shot: Shot, view: &View) -> Result<(RgbImage, u64), Failure> {
         self.cast(shot, &[*view])?;
-        Ok(self.read()?.swap_remove(0).image.over_background([0.0; 3]))
+        let cast = self.read()?.swap_remove(0);
+        Ok((cast.image.over_background([0.0; 3]), cast.samples))
+    }
+
+    fn over_black(&mut self, shot: Shot, view: &View) -> Result<RgbImage, Failure> {
+        Ok(self.pictured(shot, view)?.0)
     }
 
     /// The mean of the pictures of views of one size, before black.

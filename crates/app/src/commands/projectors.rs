@@ -212,9 +212,7 @@ impl ProjectorsArgs {
     ) -> Result<Made, Failure> {
         engine.add_levels(coarser)?;
         let ResolvedShot { shot, coarseness } = match stage.resolution {
-            ResolutionName::Full => {
-                ResolvedShot { shot: engine.prepare(parameters, skipping)?, coarseness: Coarseness::NONE }
-            }
+            ResolutionName::Full => ResolvedShot::in_full(engine.prepare(parameters, skipping)?),
             ResolutionName::Matched => {
                 let displays_from_world: Vec<_> = stage.stand.displays_from_world().collect();
                 engine.prepare_resolved(parameters, skipping, &stage.array, &displays_from_world)?

@@ -6,7 +6,7 @@ use super::facts::Facts;
 use super::job::{Progress, Waker};
 use super::loading::{Arrived, Destination, Loader, Loading, Source, Step};
 use super::notes::Notes;
-use super::state::{Camera, Clip, Edit, State, Transfer};
+use super::state::{Clip, Edit, State, Transfer};
 use crate::failure::Failure;
 use crate::output::{check_writable, unused};
 use crate::text_file::read_text_file;
@@ -223,13 +223,13 @@ impl Session {
     fn turn(&mut self) -> Option<Capture> {
         let turntable = self.turntable.as_mut()?;
         let start = *turntable.start.get_or_insert(self.state.camera);
-        let camera = turned(&self.state, start, turntable.turned_deg());
+        let camera = start.orbited(turntable.turned_deg());
         if self.state.camera != camera {
             self.state.camera = camera;
             return None;
         }
         let capture = turntable.next_shot();
-        self.state.camera = turned(&self.state, start, turntable.turned_deg());
+        self.state.camera = start.orbited(turntable.turned_deg());
         if turntable.is_over() {
             self.turntable = None;
         }
@@ -414,15 +414,6 @@ fn name_in_view(view: &Path, file: &Path) -> PathBuf {
     from_folder.unwrap_or(file).to_owned()
 }
 
-/// A camera, turned about what it looks at.
-fn turned(state: &State, camera: Camera, right_deg: f64) -> Camera {
-    let mut state = state.clone();
-    state.camera = camera;
-    // What fails leaves it where it is.
-    let _ = state.apply(&Edit::Orbit { right_deg, up_deg: 0.0 });
-    state.camera
-}
-
 /// Whether a path names a saved view.
 fn is_view(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
@@ -439,6 +430,7 @@ fn suiting(source: &Source) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::viewer::state::Camera;
     use wheatstone_core::volume::{Grid, Volume, Voxels};
     use wheatstone_render::GpuError;
 
@@ -478,9 +470,7 @@ mod tests {
     fn a_volume_that_is_refused_leaves_everything_as_it_was() {
         let source = Source { file: None, layout: None };
         let mut session = Session::begin(source.clone(), Arc::new(|| ()), Destination::Window).unwrap();
-        let grid = Grid::centred([2, 2, 2], [1.0; 3]).unwrap();
-        let volume = Volume::new(grid, Voxels::U8((0..8).collect())).unwrap();
-        let facts = Facts::of(&volume, Some(Path::new("b.nrrd")));
+        let facts = facts_of("b.nrrd");
         let arrives = |session: &Session| {
             let source = Source { file: Some("b.nrrd".into()), layout: None };
             session.showing(source, Manner::Suiting, facts.clone()).unwrap()
@@ -653,7 +643,7 @@ mod tests {
         assert!(!session.is_capturing());
         for (index, (path, camera)) in taken.iter().enumerate() {
             assert_eq!(path, &folder.path().join(format!("a_{index:04}.png")));
-            assert_eq!(*camera, turned(&session.state, start, 90.0 * index as f64));
+            assert_eq!(*camera, start.orbited(90.0 * index as f64));
         }
         assert_eq!(taken.len(), 4);
         session.perform(&turn("b.png"));

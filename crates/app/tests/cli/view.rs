@@ -235,11 +235,7 @@ fn keys_are_held_and_pressed_with_ctrl() {
 "#;
     let (bench, run) = play(script, &["--headless"], None);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    let azimuth_deg = |name: &str| {
-        let text = std::fs::read_to_string(bench.path(name)).unwrap();
-        let view: serde_json::Value = serde_json::from_str(&text).unwrap();
-        view["camera"]["azimuth_deg"].as_f64().unwrap()
-    };
+    let azimuth_deg = |name: &str| saved(&bench, name)["camera"]["azimuth_deg"].as_f64().unwrap();
     assert!(azimuth_deg("view.json") > azimuth_deg("before.json") + 2.0, "{}", azimuth_deg("view.json"));
     assert!(!bench.path("after.json").exists(), "Ctrl Q ends the program");
     assert!(bench.path("view-2.json").exists() && !bench.path("view-3.json").exists());

@@ -22,6 +22,11 @@ impl PixelRect {
         Self::of_positions(world_points.into_iter().map(|point| view.pixel_position(point)), view.size)
     }
 
+    /// Width and height, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [&self.columns, &self.rows].map(|range| range.len() as u32)
+    }
+
     /// Whether it has no pixels.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty() || self.rows.is_empty()
@@ -113,8 +118,7 @@ impl View {
                 Projection::Mcop(Mcop { left_m, right_m, down_m, up_m, ..m })
             }
         };
-        let size = [&rect.columns, &rect.rows].map(|range| range.len() as u32);
-        Self { projection, size, ..*self }
+        Self { projection, size: rect.size(), ..*self }
     }
 
     /// The nearest and the furthest depth of some points in world space, metres; negative behind the eye.

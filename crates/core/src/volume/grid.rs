@@ -1,11 +1,15 @@
 //! The voxel grid: dimensions and the affine map into patient space.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use thiserror::Error;
 
 /// Most voxel lengths from one corner of a volume to another. More of them would take rays millions of samples of voxels that are a
 /// million times as long as wide; those that scanners make hold thousands.
 pub const MOST_VOXEL_LENGTHS: f64 = 65_536.0;
+
+/// The ways from corner to corner through a volume, texture space.
+pub(crate) const DIAGONALS: [Vec3; 4] =
+    [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
 
 /// Dimensions and place of a voxel grid.
 ///
@@ -128,9 +132,7 @@ impl Grid {
     /// The longest way through the volume, mm.
     fn diagonal_mm(&self) -> f64 {
         let patient_from_texture = self.patient_from_texture().matrix3;
-        let corners =
-            [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)];
-        corners.map(|corner| (patient_from_texture * corner).length()).into_iter().fold(0.0, f64::max)
+        DIAGONALS.map(|way| (patient_from_texture * way.as_dvec3()).length()).into_iter().fold(0.0, f64::max)
     }
 
     /// Edge lengths of the volume, mm.

@@ -8,6 +8,7 @@ mod stored_slices;
 mod voxels;
 mod window;
 
+pub(crate) use grid::DIAGONALS;
 pub use grid::{Grid, GridError, MOST_VOXEL_LENGTHS};
 pub use statistics::{Histogram, Statistics};
 pub use storage::{Encoding, StorageKind, StoredVoxels};

@@ -153,13 +153,17 @@ impl Deep {
         RgbImage::mean(&cast(&self.scene, &views))
     }
 
+    fn detail(&self, coarseness: Coarseness) -> LevelOfDetail {
+        LevelOfDetail::Resolved { resolution: self.array.resolution(), coarseness }
+    }
+
     fn slabs(&self, view: &View, coarseness: Coarseness) -> Vec<Slab> {
-        let detail = LevelOfDetail::Resolved { resolution: self.array.resolution(), coarseness };
+        let detail = self.detail(coarseness);
         detail.slabs(view, &self.scene.parameters, detail.level_count(self.casters.len()))
     }
 
     fn cast(&self, view: &View, coarseness: Coarseness) -> Cast {
-        let detail = LevelOfDetail::Resolved { resolution: self.array.resolution(), coarseness };
+        let detail = self.detail(coarseness);
         self.slabs(view, coarseness).iter().fold(Cast::nothing(view.size), |front, slab| {
             let parameters = self.scene.parameters.of_level(slab.level);
             let caster = &self.casters[detail.sampled(slab.level)];
@@ -184,10 +188,7 @@ impl Deep {
         let world = |moved| eye.view(self.array.description().screen_size_m, moved * display_from_world);
         let rect =
             PixelRect::around(&world(DAffine3::IDENTITY), self.scene.parameters.visible_corners_world());
-        let cut = |picture: &RgbImage| {
-            let size = [rect.columns.len() as u32, rect.rows.len() as u32];
-            picture.cut([rect.columns.start, rect.rows.start], size)
-        };
+        let cut = |picture: &RgbImage| picture.cut([rect.columns.start, rect.rows.start], rect.size());
         let truth = cut(&self.of_beams(world));
         let views = self.array.views(display_from_world);
         let slabs = self.slabs(&views[12], Coarseness::ALL);

@@ -100,3 +100,10 @@ impl From<wgpu::Error> for GpuError {
         }
     }
 }
+
+impl GpuError {
+    /// [`GpuError::Refused`], for what an error says.
+    pub(crate) fn refused(error: impl std::fmt::Display) -> Self {
+        Self::Refused { reason: error.to_string() }
+    }
+}

@@ -192,7 +192,7 @@ impl Gpu {
     pub fn poll(&self) -> Result<(), GpuError> {
         let polled = self.device.poll(wgpu::PollType::Poll);
         self.check()?;
-        polled.map(drop).map_err(|error| GpuError::Refused { reason: error.to_string() })
+        polled.map(drop).map_err(GpuError::refused)
     }
 
     /// All texels of a texture, row by row; waits until all submitted work is done.

@@ -1,8 +1,8 @@
 //! What pieces take by the device's timestamps.
 
 use crate::gpu::{Gpu, GpuError};
+use crate::readback::Arrival;
 use crate::stamps::Stamps;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// Bytes of a timestamp.
 const STAMP_BYTES: u64 = 8;
@@ -21,7 +21,7 @@ pub(super) struct StampClock {
 #[derive(Debug)]
 struct Reading {
     bytes: u64,
-    arrived: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    arrival: Arrival,
 }
 
 impl StampClock {
@@ -68,24 +68,16 @@ impl StampClock {
     /// Begins to read, after the submission.
     pub(super) fn begin_reading(&mut self, pieces: usize) {
         let bytes = (pieces as u64 + 1) * STAMP_BYTES;
-        let (sender, arrived) = channel();
-        // Nobody listens any more where the view has been given up.
-        self.readable.slice(..bytes).map_async(wgpu::MapMode::Read, move |result| drop(sender.send(result)));
-        self.reading = Some(Reading { bytes, arrived });
+        let arrival = Arrival::of(&self.readable.slice(..bytes));
+        self.reading = Some(Reading { bytes, arrival });
     }
 
     /// What the pieces took, seconds, once the device has finished them.
     pub(super) fn read(&mut self) -> Result<Option<Vec<f64>>, GpuError> {
         let Some(reading) = self.reading.take() else { return Ok(None) };
-        match reading.arrived.try_recv() {
-            Err(TryRecvError::Empty) => {
-                self.reading = Some(reading);
-                return Ok(None);
-            }
-            Ok(Err(error)) => return Err(refused(&error)),
-            // wgpu drops the callbacks of buffers that it has mapped if a window cannot be configured because another thread gives the
-            // device work.
-            Ok(Ok(())) | Err(TryRecvError::Disconnected) => {}
+        if !reading.arrival.is_here()? {
+            self.reading = Some(reading);
+            return Ok(None);
         }
         let seconds = self.between_stamps(reading.bytes);
         self.readable.unmap();
@@ -93,13 +85,9 @@ impl StampClock {
     }
 
     fn between_stamps(&self, bytes: u64) -> Result<Vec<f64>, GpuError> {
-        let mapped = self.readable.slice(..bytes).get_mapped_range().map_err(|error| refused(&error))?;
+        let mapped = self.readable.slice(..bytes).get_mapped_range().map_err(GpuError::refused)?;
         let stamps: &[u64] = bytemuck::cast_slice(&mapped);
         let between = |stamps: &[u64]| stamps[1].saturating_sub(stamps[0]) as f64 * self.tick_s;
         Ok(stamps.windows(2).map(between).collect())
     }
-}
-
-fn refused(error: &dyn std::fmt::Display) -> GpuError {
-    GpuError::Refused { reason: error.to_string() }
 }

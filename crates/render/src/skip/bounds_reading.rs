@@ -2,8 +2,8 @@
 
 use super::GpuSkipMap;
 use crate::gpu::{Gpu, GpuError};
+use crate::readback::Arrival;
 use glam::Vec3;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use wheatstone_core::skip::BlockGrid;
 
 /// The numbers of a skip map on their way to the host.
@@ -12,7 +12,7 @@ pub struct BoundsReading {
     grid: BlockGrid,
     readable: wgpu::Buffer,
     row_bytes: usize,
-    arrived: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    arrival: Arrival,
 }
 
 impl GpuSkipMap {
@@ -34,11 +34,9 @@ impl GpuSkipMap {
         // All octants are 0 in the same blocks.
         self.encode_read(&mut encoder, &readable, row_bytes);
         gpu.queue.submit([encoder.finish()]);
-        let (sender, arrived) = channel();
-        // Nobody listens any more where other bounds are waited for.
-        readable.slice(..).map_async(wgpu::MapMode::Read, move |result| drop(sender.send(result)));
+        let arrival = Arrival::of(&readable.slice(..));
         gpu.check()?;
-        Ok(BoundsReading { grid, readable, row_bytes, arrived })
+        Ok(BoundsReading { grid, readable, row_bytes, arrival })
     }
 }
 
@@ -48,13 +46,10 @@ impl BoundsReading {
     /// # Errors
     /// A lost device.
     pub fn poll(&self) -> Result<Option<[Vec3; 2]>, GpuError> {
-        let refused = |error: &dyn std::fmt::Display| GpuError::Refused { reason: error.to_string() };
-        match self.arrived.try_recv() {
-            Err(TryRecvError::Empty) => return Ok(None),
-            Err(error @ TryRecvError::Disconnected) => return Err(refused(&error)),
-            Ok(result) => result.map_err(|error| refused(&error))?,
+        if !self.arrival.is_here()? {
+            return Ok(None);
         }
-        let mapped = self.readable.slice(..).get_mapped_range().map_err(|error| refused(&error))?;
+        let mapped = self.readable.slice(..).get_mapped_range().map_err(GpuError::refused)?;
         let width = self.grid.dims()[0];
         let blocks = mapped.chunks(self.row_bytes).flat_map(|row| &row[..width]);
         let occupied = blocks.enumerate().filter(|&(_, &distance)| distance == 0).map(|(block, _)| block);

@@ -16,9 +16,8 @@ impl Target {
     pub fn read_layers(&self, gpu: &Gpu, view: &View) -> Result<Option<EmissionAbsorption>, GpuError> {
         let Some(texture) = &self.layers else { return Ok(None) };
         let words: Vec<[u32; 4]> = read_texture(gpu, texture)?;
-        let refused = |error: &dyn std::fmt::Display| GpuError::Refused { reason: error.to_string() };
         let mut layers =
-            EmissionAbsorption::clear(self.size(), LAYERS as usize).map_err(|error| refused(&error))?;
+            EmissionAbsorption::clear(self.size(), LAYERS as usize).map_err(GpuError::refused)?;
         let rays = RayField::new(view, DAffine3::IDENTITY);
         let [width, height] = self.size().map(|side| side as usize);
         for (pixel, layers) in layers.layers_mut().chunks_mut(LAYERS as usize).enumerate() {

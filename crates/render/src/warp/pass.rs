@@ -50,7 +50,7 @@ pub(super) fn build(
     &KernelFiles { root, choices, entry_point }: &KernelFiles<'_>,
     format: wgpu::TextureFormat,
 ) -> Result<wgpu::RenderPipeline, GpuError> {
-    let source = compose(root, choices).map_err(|error| GpuError::Refused { reason: error.to_string() })?;
+    let source = compose(root, choices).map_err(GpuError::refused)?;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(root),
         source: wgpu::ShaderSource::Wgsl(source.text.into()),

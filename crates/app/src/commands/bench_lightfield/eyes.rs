@@ -102,10 +102,9 @@ pub(super) fn sights(
             let beams = engine.mean(shot, array.resolution().beam(BEAM_RAYS).map(view))?;
             for (images, sights) in frames.iter().zip(&mut sights) {
                 let seen = array.seen_from(&eye, images).map_err(Failure::input)?;
-                let [dssim, dssim_of_beams] =
-                    [&truth, &beams].map(|truth| compare(&seen, truth).map(|quality| quality.dssim()));
-                let dssim = dssim.map_err(Failure::input)?;
-                let dssim_of_beams = dssim_of_beams.map_err(Failure::input)?;
+                let off =
+                    |truth| compare(&seen, truth).map(|quality| quality.dssim()).map_err(Failure::input);
+                let (dssim, dssim_of_beams) = (off(&truth)?, off(&beams)?);
                 sights.push(Sight { walk, eye_m, dssim, dssim_of_beams });
             }
             bar.advance();

@@ -73,7 +73,7 @@ pub(super) fn measure(stage: &Stage<'_>) -> Result<Vec<FullFrame>, Failure> {
         samples: 0,
         times_ms: Vec::new(),
     };
-    let mut casts = vec![of("full", ResolvedShot { shot: full, coarseness: Coarseness::NONE })];
+    let mut casts = vec![of("full", ResolvedShot::in_full(full))];
     if stage.has_levels {
         let places = [display_from_world];
         let resolved = engine.prepare_resolved(stage.parameters, stage.skipping, stage.array, &places)?;
@@ -119,10 +119,9 @@ pub(super) fn measure(stage: &Stage<'_>) -> Result<Vec<FullFrame>, Failure> {
 fn pictured(engine: &mut Engine<'_>, shot: Shot, views: &[View]) -> Result<(Vec<RgbImage>, u64), Failure> {
     let (mut images, mut samples) = (Vec::with_capacity(views.len()), 0);
     for view in views {
-        engine.cast(shot, &[*view])?;
-        let cast = engine.read()?.swap_remove(0);
-        samples += cast.samples;
-        images.push(cast.image.over_background([0.0; 3]));
+        let (image, of_image) = engine.pictured(shot, view)?;
+        samples += of_image;
+        images.push(image);
     }
     Ok((images, samples))
 }

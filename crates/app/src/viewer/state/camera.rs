@@ -83,6 +83,12 @@ impl Camera {
         self.elevation_deg = (self.elevation_deg + up_deg).clamp(-90.0, 90.0);
     }
 
+    /// The same, turned to the right about what it looks at.
+    pub(crate) fn orbited(mut self, right_deg: f64) -> Self {
+        self.orbit(right_deg, 0.0);
+        self
+    }
+
     /// Moves sideways by parts of what the picture's shorter side shows at the target.
     pub(super) fn pan(&mut self, right: f64, up: f64) {
         self.move_target(DVec3::new(right, up, 0.0) * self.shown_m());
