@@ -42,6 +42,7 @@ impl Stratum {
 }
 
 /// The layers at a position of the picture, from the front.
+#[derive(Default)]
 pub(super) struct Column {
     pub(super) strata: [Stratum; MOST_LAYERS],
 }
@@ -50,6 +51,10 @@ impl Column {
     /// Opacity of all layers together.
     pub(super) fn alpha(&self) -> f64 {
         self.strata.iter().map(|stratum| stratum.color.w).sum()
+    }
+
+    fn weighted(&self, weight: f64) -> Self {
+        Self { strata: self.strata.map(|stratum| Stratum { color: weight * stratum.color, ..stratum }) }
     }
 }
 
@@ -101,65 +106,81 @@ impl<'a> Columns<'a> {
     /// picture is interpolated, so that all layers together are as opaque as an interpolated picture, however each pixel's
     /// opacity is divided among them; its depths are those of the pixel that has most of it and of others that agree.
     pub(super) fn at(&self, position: DVec2) -> Column {
-        let corners = self.corners(position);
-        let metres_per_depth = self.rays.at(position.x, position.y).1.length();
-        let mut column = Column { strata: [Stratum::default(); MOST_LAYERS] };
-        let mut through = 1.0;
-        for (i, stratum) in column.strata.iter_mut().enumerate().take(self.layer_count()) {
-            *stratum = self.joined(&corners.map(|(pixel, weight)| self.part(pixel, i, weight)));
-            if stratum.color.w > 0.0 {
-                let length_m = (stratum.end_m - stratum.start_m) * metres_per_depth;
-                stratum.absorption_per_m = optical_depth(stratum.color.w / through) / length_m;
-                through = (through - stratum.color.w).max(LEAST_THROUGH);
-            }
+        let (at, last) = (self.within(position), self.size_px() - 1.0);
+        let low = at.floor();
+        let along = at - low;
+        let high = (low + 1.0).min(last);
+        let above = self.united(
+            &self.part(low, (1.0 - along.x) * (1.0 - along.y)),
+            &self.part(DVec2::new(high.x, low.y), along.x * (1.0 - along.y)),
+        );
+        let below = self.united(
+            &self.part(DVec2::new(low.x, high.y), (1.0 - along.x) * along.y),
+            &self.part(high, along.x * along.y),
+        );
+        self.absorbing(self.united(&above, &below), position)
+    }
+
+    /// Interpolates between a column and the layers at the middle of a pixel along an axis, by a share of the way there.
+    pub(super) fn between(&self, before: &Column, position: DVec2, axis: DVec2, share: f64) -> Column {
+        let (at, last) = (self.within(position), self.size_px() - 1.0);
+        let low = (at + 0.5 * axis).floor();
+        let along = (at - low).dot(DVec2::ONE - axis);
+        let high = (low + DVec2::ONE - axis).min(last);
+        let there = self.united(&self.part(low, share * (1.0 - along)), &self.part(high, share * along));
+        self.absorbing(self.united(&before.weighted(1.0 - share), &there), position)
+    }
+
+    /// Of the middles of pixels, from the first.
+    fn within(&self, position: DVec2) -> DVec2 {
+        (position - 0.5).clamp(DVec2::ZERO, self.size_px() - 1.0)
+    }
+
+    /// What a pixel contributes, by its weight.
+    fn part(&self, pixel: DVec2, weight: f64) -> Column {
+        let count = self.layer_count();
+        let first = (pixel.y as usize * self.layers.size()[0] as usize + pixel.x as usize) * count;
+        let layers = self.layers.layers()[first..].iter().zip(&self.added[first..]);
+        let mut column = Column::default();
+        for (stratum, (layer, added)) in column.strata[..count].iter_mut().zip(layers) {
+            *stratum = Stratum {
+                start_m: f64::from(layer.start_m),
+                end_m: f64::from(layer.end_m),
+                color: weight * added.as_dvec4(),
+                absorption_per_m: 0.0,
+            };
         }
         column
     }
 
-    /// Pixels about a position, and how much each counts.
-    fn corners(&self, position: DVec2) -> [(usize, f64); 4] {
-        let last = self.size_px() - 1.0;
-        let at = (position - 0.5).clamp(DVec2::ZERO, last);
-        let low = at.floor().min((last - 1.0).max(DVec2::ZERO));
-        let along = at - low;
-        let high = (low + 1.0).min(last);
-        let width = last.x as usize + 1;
-        let pixel = |x: f64, y: f64| y as usize * width + x as usize;
-        [
-            (pixel(low.x, low.y), (1.0 - along.x) * (1.0 - along.y)),
-            (pixel(high.x, low.y), along.x * (1.0 - along.y)),
-            (pixel(low.x, high.y), (1.0 - along.x) * along.y),
-            (pixel(high.x, high.y), along.x * along.y),
-        ]
+    /// Two columns together. Depths are those of the one that has more of a layer, and of the other if it agrees.
+    fn united(&self, first: &Column, second: &Column) -> Column {
+        let mut column = Column::default();
+        for (stratum, (a, b)) in column.strata.iter_mut().zip(first.strata.iter().zip(&second.strata)) {
+            let do_agree = self.agree(a, b, 1.0);
+            let has_less = a.color.w < b.color.w;
+            let a_weight = if has_less && !do_agree { 0.0 } else { a.color.w };
+            let b_weight = if !has_less && !do_agree { 0.0 } else { b.color.w };
+            let share = b_weight / (a_weight + b_weight).max(f64::MIN_POSITIVE);
+            *stratum = Stratum {
+                start_m: a.start_m + share * (b.start_m - a.start_m),
+                end_m: a.end_m + share * (b.end_m - a.end_m),
+                color: a.color + b.color,
+                absorption_per_m: 0.0,
+            };
+        }
+        column
     }
 
-    /// What a pixel contributes to a layer, by its weight.
-    fn part(&self, pixel: usize, layer: usize, weight: f64) -> Stratum {
-        let at = pixel * self.layer_count() + layer;
-        let layer = &self.layers.layers()[at];
-        Stratum {
-            start_m: f64::from(layer.start_m),
-            end_m: f64::from(layer.end_m),
-            color: self.added[at].as_dvec4() * weight,
-            absorption_per_m: 0.0,
+    /// A column and what it absorbs at a position.
+    fn absorbing(&self, mut column: Column, position: DVec2) -> Column {
+        let metres_per_depth = self.rays.at(position.x, position.y).1.length();
+        let mut through = 1.0;
+        for stratum in column.strata.iter_mut().filter(|stratum| stratum.color.w > 0.0) {
+            let length_m = (stratum.end_m - stratum.start_m) * metres_per_depth;
+            stratum.absorption_per_m = optical_depth(stratum.color.w / through) / length_m;
+            through = (through - stratum.color.w).max(LEAST_THROUGH);
         }
-    }
-
-    /// All parts together, where most of it is.
-    fn joined(&self, parts: &[Stratum; 4]) -> Stratum {
-        let most = parts.iter().max_by(|a, b| a.color.w.total_cmp(&b.color.w)).unwrap_or(&parts[0]);
-        if most.color.w <= 0.0 {
-            return Stratum::default();
-        }
-        let (mut color, mut span_m, mut weight) = (DVec4::ZERO, DVec2::ZERO, 0.0);
-        for part in parts {
-            color += part.color;
-            if part.color.w > 0.0 && self.agree(most, part, 1.0) {
-                span_m += part.color.w * DVec2::new(part.start_m, part.end_m);
-                weight += part.color.w;
-            }
-        }
-        let [start_m, end_m] = (span_m / weight).to_array();
-        Stratum { start_m, end_m, color, absorption_per_m: 0.0 }
+        column
     }
 }

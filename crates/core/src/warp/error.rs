@@ -58,9 +58,6 @@ pub enum WarpError {
     /// A picture that was cast without layers.
     #[error("a picture without layers: only casts that keep them can be warped by volume")]
     NoLayers,
-    /// A step that leads nowhere.
-    #[error("steps of {0} pixels: must be above 0 and finite")]
-    StepLength(f64),
 }
 
 impl WarpError {

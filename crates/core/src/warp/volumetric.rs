@@ -25,27 +25,22 @@ const LEAST_TRANSMITTANCE: f64 = 0.01;
 pub struct VolumetricSettings {
     /// Most steps n of a ray, 1 to 4096.
     pub most_steps: u32,
-    /// Pixels of the shown picture that a step passes, above 0; more where the steps would not do.
-    pub step_px: f64,
 }
 
 impl Default for VolumetricSettings {
     fn default() -> Self {
-        Self { most_steps: 32, step_px: 1.0 }
+        Self { most_steps: 32 }
     }
 }
 
 impl VolumetricSettings {
-    /// Refuses numbers of steps and lengths that are none.
+    /// Refuses numbers of steps that are none.
     ///
     /// # Errors
     /// Settings out of range.
     pub fn check(&self) -> Result<(), WarpError> {
         if !(1..=MOST_STEPS).contains(&self.most_steps) {
             return Err(WarpError::Steps { steps: self.most_steps, most: MOST_STEPS });
-        }
-        if !(self.step_px > 0.0 && self.step_px.is_finite()) {
-            return Err(WarpError::StepLength(self.step_px));
         }
         Ok(())
     }
@@ -187,17 +182,25 @@ impl Source<'_> {
         let mut light = Light { rgb: DVec3::ZERO, transmittance: 1.0, depth_m: f64::INFINITY };
         let Some([first, last]) = self.stretch(ray, near_m..far_m) else { return light };
         let path = Path::new(first.pixel, last.pixel, self.settings);
-        let mut here = first;
-        let mut column = self.columns.at(here.pixel);
+        let (mut here, mut here_px) = (first, 0.0);
+        let mut column = self.columns.at(first.pixel);
         for step in 1..=path.steps {
-            let there = ray.at(between(&first, &last, path.fraction_after(step)));
-            let next = self.columns.at(there.pixel);
-            let segment = Segment { ends: [here, there], columns: [&column, &next], step_px: path.stride_px };
+            let middle_px = path.middle_px + f64::from(step * path.stride_px);
+            let there_px = middle_px.min(path.length_px);
+            let fraction = if there_px < path.length_px { there_px / path.length_px } else { 1.0 };
+            let there = ray.at(between(&first, &last, fraction));
+            let share = (there_px - here_px) / (middle_px - here_px);
+            let next = self.columns.between(&column, path.at(middle_px), path.axis, share);
+            let segment = Segment {
+                ends: [here, there],
+                columns: [&column, &next],
+                stride_px: f64::from(path.stride_px),
+            };
             segment.add_to(&mut light, ray.metres_per_depth, &self.columns);
             if light.transmittance <= LEAST_TRANSMITTANCE {
                 break;
             }
-            (here, column) = (there, next);
+            (here, here_px, column) = (there, middle_px, next);
         }
         light
     }
@@ -214,16 +217,21 @@ impl Source<'_> {
     }
 }
 
-/// The way of a ray in the shown picture, cut, if there are steps enough, where it passes the middles of pixels along the axis that it
-/// mostly follows: within a
-/// step what is interpolated between pixels is linear, and interpolating once more between a step's ends blurs nothing.
+/// The way of a ray in the shown picture, cut where it passes the middles of pixels along the axis that it mostly follows: columns
+/// there need the two pixels beside the ray, and within a step what is interpolated between pixels is linear, so that interpolating
+/// once more between a step's ends blurs nothing.
 struct Path {
-    /// Its length along that axis, pixels.
+    /// Where it begins.
+    first: DVec2,
+    /// Its change per pixel along the axis.
+    per_px: DVec2,
+    axis: DVec2,
+    /// Its length along the axis, pixels.
     length_px: f64,
-    /// Of the first step, to the middle of the next pixel.
-    first_px: f64,
-    /// Of the steps after that.
-    stride_px: f64,
+    /// From its beginning to the middle of a pixel that is no further on than that.
+    middle_px: f64,
+    /// Pixels of a step.
+    stride_px: u32,
     steps: u32,
 }
 
@@ -233,21 +241,17 @@ impl Path {
         let axis = if way.x.abs() >= way.y.abs() { DVec2::X } else { DVec2::Y };
         let [from, along] = [first.dot(axis), way.dot(axis)];
         let past_middle = (from - 0.5).rem_euclid(1.0);
-        let first_px = if along < 0.0 && past_middle > 0.0 { past_middle } else { 1.0 - past_middle };
+        let middle_px = if along < 0.0 && past_middle > 0.0 { past_middle - 1.0 } else { -past_middle };
         let length_px = along.abs();
-        let most_strides = f64::from(settings.most_steps - 1);
-        let rest_px = (length_px - first_px).max(0.0);
-        let stride_px = settings.step_px.max(rest_px / most_strides.max(1.0));
-        let steps = 1 + ((rest_px / stride_px).ceil() as u32).min(settings.most_steps - 1);
-        Self { length_px, first_px, stride_px, steps }
+        let pixels = ((length_px - middle_px).ceil() as u32).max(1);
+        let stride_px = pixels.div_ceil(settings.most_steps);
+        let per_px = way / length_px.max(f64::MIN_POSITIVE);
+        Self { first, per_px, axis, length_px, middle_px, stride_px, steps: pixels.div_ceil(stride_px) }
     }
 
-    /// How much of the way so many steps are.
-    fn fraction_after(&self, steps: u32) -> f64 {
-        if steps == self.steps {
-            return 1.0;
-        }
-        (self.first_px + f64::from(steps - 1) * self.stride_px) / self.length_px
+    /// Where it is, going on in the same direction, so many pixels along the axis from its beginning.
+    fn at(&self, along_px: f64) -> DVec2 {
+        self.first + along_px * self.per_px
     }
 }
 
@@ -262,8 +266,8 @@ struct Segment<'a> {
     ends: [Place; 2],
     /// At the ends.
     columns: [&'a Column; 2],
-    /// Length in the shown picture.
-    step_px: f64,
+    /// Pixels between the columns.
+    stride_px: f64,
 }
 
 /// A layer along a step: a sheet between the depths at both ends, metres.
@@ -318,7 +322,7 @@ impl Segment<'_> {
             }
             let (here, there) = (here.or_clear_at(&there), there.or_clear_at(&here));
             let mut add = |sheet: Sheet, part| self.add_sheet(light, metres_per_depth, &sheet, part);
-            if columns.agree(&here, &there, self.step_px) {
+            if columns.agree(&here, &there, self.stride_px) {
                 add(Sheet::between([&here, &there], [alpha, next_alpha]), 0.0..1.0);
             } else {
                 add(Sheet::between([&here; 2], [alpha; 2]), 0.0..0.5);

@@ -53,56 +53,71 @@ fn agree(a_start_m: vec4f, a_end_m: vec4f, b_start_m: vec4f, b_end_m: vec4f, apa
 }
 
 // Interpolates the layers of the four pixels about a position, by what they add to the picture.
-fn column_at(position: vec2f, metres_per_depth: f32) -> Column {
+fn column_at(position: vec2f) -> Column {
     let last = warp.size - 1.0;
     let at = clamp(position - 0.5, vec2f(0.0), last);
-    let low = min(floor(at), max(last - 1.0, vec2f(0.0)));
+    let low = floor(at);
     let along = at - low;
     let high = min(low + 1.0, last);
-    let c0 = part_of(low, (1.0 - along.x) * (1.0 - along.y));
-    let c1 = part_of(vec2f(high.x, low.y), along.x * (1.0 - along.y));
-    let c2 = part_of(vec2f(low.x, high.y), (1.0 - along.x) * along.y);
-    let c3 = part_of(high, along.x * along.y);
-    // Depths are those of the pixel that has most of a layer and of others that agree.
-    let second = c1.a >= c0.a;
-    let most_of_two = select(c0.a, c1.a, second);
-    let third = c2.a >= most_of_two;
-    let most_of_three = select(most_of_two, c2.a, third);
-    let fourth = c3.a >= most_of_three;
-    let start_m = select(select(select(c0.start_m, c1.start_m, second), c2.start_m, third), c3.start_m, fourth);
-    let end_m = select(select(select(c0.end_m, c1.end_m, second), c2.end_m, third), c3.end_m, fourth);
-    let w0 = select(vec4f(0.0), c0.a, agree(start_m, end_m, c0.start_m, c0.end_m, 1.0));
-    let w1 = select(vec4f(0.0), c1.a, agree(start_m, end_m, c1.start_m, c1.end_m, 1.0));
-    let w2 = select(vec4f(0.0), c2.a, agree(start_m, end_m, c2.start_m, c2.end_m, 1.0));
-    let w3 = select(vec4f(0.0), c3.a, agree(start_m, end_m, c3.start_m, c3.end_m, 1.0));
-    let per_weight = 1.0 / max(w0 + w1 + w2 + w3, vec4f(TINY));
-    var column: Column;
-    column.start_m = per_weight * (w0 * c0.start_m + w1 * c1.start_m + w2 * c2.start_m + w3 * c3.start_m);
-    column.end_m = per_weight * (w0 * c0.end_m + w1 * c1.end_m + w2 * c2.end_m + w3 * c3.end_m);
-    column.r = c0.r + c1.r + c2.r + c3.r;
-    column.g = c0.g + c1.g + c2.g + c3.g;
-    column.b = c0.b + c1.b + c2.b + c3.b;
-    column.a = c0.a + c1.a + c2.a + c3.a;
+    let above = united(
+        part_of(low, (1.0 - along.x) * (1.0 - along.y)),
+        part_of(vec2f(high.x, low.y), along.x * (1.0 - along.y)),
+    );
+    let below = united(part_of(vec2f(low.x, high.y), (1.0 - along.x) * along.y), part_of(high, along.x * along.y));
+    return absorbing(united(above, below), position);
+}
+
+// Interpolates between a column and the layers at the middle of a pixel along an axis, by a share of the way there.
+fn column_between(before: Column, position: vec2f, axis: vec2f, share: f32) -> Column {
+    let last = warp.size - 1.0;
+    let at = clamp(position - 0.5, vec2f(0.0), last);
+    let low = floor(at + 0.5 * axis);
+    let along = dot(at - low, 1.0 - axis);
+    let high = min(low + 1.0 - axis, last);
+    let there = united(part_of(low, share * (1.0 - along)), part_of(high, share * along));
+    return absorbing(united(weighted(before, 1.0 - share), there), position);
+}
+
+fn weighted(column: Column, weight: f32) -> Column {
+    return Column(
+        column.start_m,
+        column.end_m,
+        weight * column.r,
+        weight * column.g,
+        weight * column.b,
+        weight * column.a,
+        vec4f(0.0),
+    );
+}
+
+// Two columns together. Depths are those of the one that has more of a layer, and of the other if it agrees.
+fn united(first: Column, second: Column) -> Column {
+    let do_agree = agree(first.start_m, first.end_m, second.start_m, second.end_m, 1.0);
+    let has_less = first.a < second.a;
+    let first_a = select(first.a, vec4f(0.0), has_less & !do_agree);
+    let second_a = select(second.a, vec4f(0.0), !has_less & !do_agree);
+    let share = second_a / max(first_a + second_a, vec4f(TINY));
+    return Column(
+        mix(first.start_m, second.start_m, share),
+        mix(first.end_m, second.end_m, share),
+        first.r + second.r,
+        first.g + second.g,
+        first.b + second.b,
+        first.a + second.a,
+        vec4f(0.0),
+    );
+}
+
+// A column and what it absorbs at a position.
+fn absorbing(column: Column, position: vec2f) -> Column {
     var through: vec4f;
     through.x = 1.0;
     through.y = max(through.x - column.a.x, LEAST_THROUGH);
     through.z = max(through.y - column.a.y, LEAST_THROUGH);
     through.w = max(through.z - column.a.z, LEAST_THROUGH);
     let optical_depth = -log(1.0 - min(column.a / through, vec4f(SATURATED_ALPHA)));
+    let metres_per_depth = length(warp.shown_direction + position.x * warp.shown_dx + position.y * warp.shown_dy);
     let length_m = max((column.end_m - column.start_m) * metres_per_depth, vec4f(TINY));
-    column.absorption_per_m = select(vec4f(0.0), optical_depth / length_m, column.a > vec4f(0.0));
-    return column;
-}
-
-// The layers from the back.
-fn reversed(column: Column) -> Column {
-    return Column(
-        column.start_m.wzyx,
-        column.end_m.wzyx,
-        column.r.wzyx,
-        column.g.wzyx,
-        column.b.wzyx,
-        column.a.wzyx,
-        column.absorption_per_m.wzyx,
-    );
+    let absorption_per_m = select(vec4f(0.0), optical_depth / length_m, column.a > vec4f(0.0));
+    return Column(column.start_m, column.end_m, column.r, column.g, column.b, column.a, absorption_per_m);
 }

@@ -13,11 +13,9 @@ struct LayeredWarp {
     size: vec2f,
     // Rays of the wanted view: direction per metre of depth at the top left corner, and its change per pixel.
     wanted_direction: vec3f,
-    // Pixels of the shown picture that a step passes.
-    step_px: f32,
-    wanted_dx: vec3f,
     // Most steps of a ray.
     most_steps: f32,
+    wanted_dx: vec3f,
     wanted_dy: vec3f,
     // The same rays of the shown view.
     shown_direction: vec3f,

@@ -1,4 +1,4 @@
-import package::lib::column::{Column, SATURATED_ALPHA, TINY, agree, column_at, reversed};
+import package::lib::column::{Column, SATURATED_ALPHA, TINY, agree, column_at, column_between};
 import package::lib::cover_picture::{cover_picture};
 import package::lib::depth_range::{NOTHING, joined};
 import package::lib::layered_warp::{range, tiles, warp};
@@ -32,11 +32,16 @@ struct Place {
 
 // The way of a ray in the shown picture, cut where it passes the middles of pixels along the axis that it mostly follows.
 struct Path {
-    // Its length along that axis, pixels.
+    // Where it begins.
+    first: vec2f,
+    // Its change per pixel along the axis.
+    per_px: vec2f,
+    axis: vec2f,
+    // Its length along the axis, pixels.
     length_px: f32,
-    // Of the first step, to the middle of the next pixel.
-    first_px: f32,
-    // Of the steps after that.
+    // From its beginning to the middle of a pixel that is no further on than that.
+    middle_px: f32,
+    // Whole pixels of a step.
     stride_px: f32,
     steps: f32,
 }
@@ -64,14 +69,19 @@ fn light_along(ray: NovelRay) -> Light {
     let path = path_between(first.pixel, last.pixel, stretch_m.x < stretch_m.y);
     let goes_forward = first.shown_m <= last.shown_m;
     var here = first;
-    var column = column_along(here, goes_forward);
-    var step = 0.0;
-    while step < path.steps && light.transmittance > LEAST_TRANSMITTANCE {
-        step += 1.0;
-        let there = place_at(ray, between(first, last, fraction_after(path, step)));
-        let next = column_along(there, goes_forward);
-        light = through_step(light, here, there, column, next, path.stride_px, ray.metres_per_depth);
+    var here_px = 0.0;
+    var column = column_at(first.pixel);
+    for (var step = 1.0; step <= path.steps && light.transmittance > LEAST_TRANSMITTANCE; step += 1.0) {
+        let middle_px = path.middle_px + step * path.stride_px;
+        let there_px = min(middle_px, path.length_px);
+        let fraction = select(there_px / path.length_px, 1.0, there_px >= path.length_px);
+        let there = place_at(ray, between(first, last, fraction));
+        let middle = path.first + middle_px * path.per_px;
+        let next = column_between(column, middle, path.axis, (there_px - here_px) / (middle_px - here_px));
+        let step_m = (there.wanted_m - here.wanted_m) * ray.metres_per_depth;
+        light = through_step(light, here, there, column, next, path.stride_px, step_m, goes_forward);
         here = there;
+        here_px = middle_px;
         column = next;
     }
     return light;
@@ -82,28 +92,13 @@ fn path_between(first: vec2f, last: vec2f, is_there: bool) -> Path {
     let axis = select(vec2f(0.0, 1.0), vec2f(1.0, 0.0), abs(way.x) >= abs(way.y));
     let along = dot(way, axis);
     let past_middle = fract(dot(first, axis) - 0.5);
-    let first_px = select(1.0 - past_middle, past_middle, along < 0.0 && past_middle > 0.0);
+    let middle_px = select(-past_middle, past_middle - 1.0, along < 0.0 && past_middle > 0.0);
     let length_px = abs(along);
-    let most_strides = warp.most_steps - 1.0;
-    let rest_px = max(length_px - first_px, 0.0);
-    let stride_px = max(warp.step_px, rest_px / max(most_strides, 1.0));
-    let steps = 1.0 + min(ceil(rest_px / stride_px), most_strides);
-    return Path(length_px, first_px, stride_px, select(0.0, steps, is_there));
-}
-
-// How much of the way so many steps are.
-fn fraction_after(path: Path, steps: f32) -> f32 {
-    let fraction = (path.first_px + (steps - 1.0) * path.stride_px) / max(path.length_px, TINY);
-    return select(fraction, 1.0, steps == path.steps);
-}
-
-fn column_along(place: Place, goes_forward: bool) -> Column {
-    let direction = warp.shown_direction + place.pixel.x * warp.shown_dx + place.pixel.y * warp.shown_dy;
-    var column = column_at(place.pixel, length(direction));
-    if !goes_forward {
-        column = reversed(column);
-    }
-    return column;
+    let pixels = max(ceil(length_px - middle_px), 1.0);
+    let stride_px = ceil(pixels / warp.most_steps);
+    let steps = ceil(pixels / stride_px);
+    let per_px = way / max(length_px, TINY);
+    return Path(first, per_px, axis, length_px, middle_px, stride_px, select(0.0, steps, is_there));
 }
 
 fn place_at(ray: NovelRay, wanted_m: f32) -> Place {
@@ -174,7 +169,8 @@ fn through_step(
     column: Column,
     next: Column,
     step_px: f32,
-    metres_per_depth: f32,
+    step_m: f32,
+    goes_forward: bool,
 ) -> Light {
     let is_clear = column.a <= vec4f(0.0);
     let next_is_clear = next.a <= vec4f(0.0);
@@ -187,7 +183,6 @@ fn through_step(
     // Of the first sheet: from this column to the next, or of this column alone.
     let to_start_m = select(start_m, next_start_m, is_sheet);
     let to_end_m = select(end_m, next_end_m, is_sheet);
-    let step_m = (there.wanted_m - here.wanted_m) * metres_per_depth;
     let first_part = part_inside(here, there, start_m, end_m, to_start_m, to_end_m, vec4f(0.0), 0.5 + 0.5 * share);
     let second_part =
         part_inside(here, there, next_start_m, next_end_m, next_start_m, next_end_m, 0.5 + 0.5 * share, vec4f(1.0));
@@ -199,15 +194,23 @@ fn through_step(
     // Where about the middle of what is seen of a sheet is: halfway through a translucent one, at the front of an opaque one.
     let seen_at = share * min(first_part.begin + first_part.length / (2.0 + first_depth), vec4f(1.0));
     let a = max(mix(column.a, next.a, seen_at), vec4f(TINY));
-    let r = mix(column.r, next.r, seen_at) / a;
-    let g = mix(column.g, next.g, seen_at) / a;
-    let b = mix(column.b, next.b, seen_at) / a;
     let next_a = max(next.a, vec4f(TINY));
-    var light = before;
-    light = add(light, first.x, second.x, vec3f(r.x, g.x, b.x), vec3f(next.r.x, next.g.x, next.b.x) / next_a.x);
-    light = add(light, first.y, second.y, vec3f(r.y, g.y, b.y), vec3f(next.r.y, next.g.y, next.b.y) / next_a.y);
-    light = add(light, first.z, second.z, vec3f(r.z, g.z, b.z), vec3f(next.r.z, next.g.z, next.b.z) / next_a.z);
-    return add(light, first.w, second.w, vec3f(r.w, g.w, b.w), vec3f(next.r.w, next.g.w, next.b.w) / next_a.w);
+    var colors = transpose(
+        mat3x4f(mix(column.r, next.r, seen_at) / a, mix(column.g, next.g, seen_at) / a, mix(column.b, next.b, seen_at) / a),
+    );
+    var next_colors = transpose(mat3x4f(next.r / next_a, next.g / next_a, next.b / next_a));
+    var passed = first;
+    var next_passed = second;
+    if !goes_forward {
+        colors = mat4x3f(colors[3], colors[2], colors[1], colors[0]);
+        next_colors = mat4x3f(next_colors[3], next_colors[2], next_colors[1], next_colors[0]);
+        passed = passed.wzyx;
+        next_passed = next_passed.wzyx;
+    }
+    var light = add(before, passed.x, next_passed.x, colors[0], next_colors[0]);
+    light = add(light, passed.y, next_passed.y, colors[1], next_colors[1]);
+    light = add(light, passed.z, next_passed.z, colors[2], next_colors[2]);
+    return add(light, passed.w, next_passed.w, colors[3], next_colors[3]);
 }
 
 // What is between two columns is as opaque as the picture is there, interpolated between pixels: an opaque surface beside nothing

@@ -50,7 +50,7 @@ impl Layers {
         if self.thresholds.len() > LAYERS as usize {
             return Err(LayersError::Count(self.thresholds.len()).to_string());
         }
-        let settings = VolumetricSettings { most_steps: self.steps, ..VolumetricSettings::default() };
+        let settings = VolumetricSettings { most_steps: self.steps };
         settings.check().map_err(|error| error.to_string())?;
         Ok(Layering { thresholds, settings })
     }
